@@ -1,0 +1,60 @@
+/// strata.json, version 1: the description of rock and of where it stands. Format: docs/formats.md.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "outcrop/core/vec.h"
+#include "outcrop/fracture/tile.h"
+#include "outcrop/terrain/heightfield.h"
+#include "outcrop/terrain/strata.h"
+
+namespace outcrop {
+
+/// A kind of rock.
+struct RockMaterial {
+  std::string name = "rock";
+  BlockType block_type = BlockType::Equidimensional;
+  std::optional<JointPattern> joints;  ///< Replaces the type's own pattern.
+  double tile_side = 0.0;              ///< Metres; 0: 20 m, or smaller on terrains too small for that.
+  double sample_spacing = 0.0;         ///< Metres; 0: tile_side / 27.4.
+  double aperture = 0.0;               ///< Metres; 0: 0.002 · tile_side.
+  double rounding = 0.0;               ///< Metres; 0: 0.0125 · tile_side (25 cm at 20 m, as in the paper).
+  int min_block_samples = 12;
+  std::filesystem::path relief;        ///< Empty: the installed relief named "rough".
+  double relief_period = 0.0;          ///< Metres; rounded so that it divides the tile's side. 0: tile_side / 5.
+  double relief_amplitude = -1.0;      ///< Metres; < 0: 0.006 · tile_side.
+  Vec3f colour{0.42f, 0.37f, 0.31f};   ///< Linear albedo.
+};
+
+/// Where blocks stand.
+struct Placement {
+  double slope = radians(40.0);   ///< Ground flatter than this is left alone, radians.
+  double recess = 1.0;            ///< How far the base withdraws behind the blocks, in mean block sizes, [0, 4].
+  double distance_lo = -4.0;      ///< Anchors between these distances to the surface, in mean block sizes (negative: inside).
+  double distance_hi = 0.0;
+  double crack_depth = 0.15;      ///< Cracks are open down to this depth below the original surface, in mean block sizes.
+  double lattice_azimuth = radians(27.0);  ///< The tile lattice is turned by this about the vertical, against repetition.
+};
+
+struct StrataFile {
+  std::vector<RockMaterial> materials{RockMaterial{}};  ///< At least one.
+  Strata strata;                                        ///< Layers refer to materials by index.
+  /// `top` values were given relative to the terrain: 0 its lowest, 1 its highest point. amplify() converts.
+  bool relative_tops = false;
+  Placement placement;
+  NodataPolicy nodata = NodataPolicy::Hole;
+  Vec3f ground_colour{0.23f, 0.21f, 0.14f};             ///< Linear albedo where no rock stands.
+};
+
+/// Reads and checks a strata.json; relief paths in it are relative to the file, else names of installed reliefs.
+/// @throws InputError with file, line and column.
+[[nodiscard]] StrataFile read_strata(const std::filesystem::path& path);
+
+/// The file with the given stem in the installed or source data folder: data/reliefs/<name>.png.
+/// @throws InputError listing the known names.
+[[nodiscard]] std::filesystem::path find_relief(std::string_view name);
+
+}  // namespace outcrop

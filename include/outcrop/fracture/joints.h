@@ -1,0 +1,56 @@
+/// Joints: the fracture discs that split a tile, and the named types of rock that distribute them.
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "outcrop/core/rng.h"
+#include "outcrop/core/vec.h"
+
+namespace outcrop {
+
+/// The block types of Paris et al. 2020, section 4.1 (after Dearman 1991 and Palmström 2001).
+enum class BlockType { Equidimensional, Rhombohedral, Polyhedral, Tabular, Columnar, Prismatic };
+
+inline constexpr BlockType kBlockTypes[] = {BlockType::Equidimensional, BlockType::Rhombohedral, BlockType::Polyhedral,
+                                            BlockType::Tabular,         BlockType::Columnar,     BlockType::Prismatic};
+
+/// "equidimensional", "rhombohedral", …
+[[nodiscard]] std::string_view name(BlockType type) noexcept;
+
+/// A fracture disc in tile space (a torus of the tile's side).
+struct Disc {
+  Vec3 centre{0.0};
+  double radius = 0.0;      ///< Metres.
+  Vec3 normal{0, 0, 1};     ///< Unit.
+  int set = -1;             ///< Joint set it was drawn from; -1: irregular.
+};
+
+/// A family of discs about one mean orientation.
+struct JointSet {
+  Vec3 normal{0, 0, 1};       ///< Mean normal in tile space, unit (z: bedding normal).
+  double kappa = 300.0;       ///< Fisher concentration about the normal, > 0; angular deviation is about 81°/√κ.
+  double share = 1.0;         ///< Relative number of discs.
+  double radius_lo = 5.0;     ///< Metres at a 20 m tile; scaled with the tile's side.
+  double radius_hi = 5.0;
+};
+
+/// How one type distributes its joints in a tile of 20 m.
+struct JointPattern {
+  std::vector<JointSet> sets;
+  int discs = 15;                ///< Number of discs in all.
+  double irregular_share = 0.0;  ///< Share of the discs whose normals are uniform on the sphere.
+  double centre_spacing = 2.0;   ///< Smallest distance between disc centres (of one set), metres at 20 m.
+  double column_width = 0.0;     ///< > 0: columns of this mean width along z first (Voronoi cells), then the sets.
+};
+
+/// The pattern that stands for a type; numbers and sources in joints.cpp.
+[[nodiscard]] JointPattern joint_pattern(BlockType type);
+
+/// Draws the discs of a pattern in a tile of `side` metres; largest radius first, ties in draw order.
+[[nodiscard]] std::vector<Disc> draw_discs(const JointPattern& pattern, double side, Seed seed);
+
+/// A unit vector from the Fisher distribution about `mean`: cos θ = 1 + ln(u + (1 − u) e^(−2κ)) / κ.
+[[nodiscard]] Vec3 fisher_direction(const Vec3& mean, double kappa, Rng& rng);
+
+}  // namespace outcrop

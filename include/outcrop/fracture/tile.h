@@ -1,0 +1,74 @@
+/// The fracture tile: a periodic cube of rock, split into convex blocks.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "outcrop/core/box.h"
+#include "outcrop/core/rng.h"
+#include "outcrop/core/task.h"
+#include "outcrop/fracture/joints.h"
+#include "outcrop/implicit/rounded_polytope.h"
+
+namespace outcrop {
+
+struct TileOptions {
+  BlockType type = BlockType::Equidimensional;
+  JointPattern pattern{};         ///< Empty sets and no columns: joint_pattern(type).
+  double side = 20.0;             ///< Metres, > 0.
+  double spacing = 0.0;           ///< Sample spacing, metres; 0: side / 27.4, about 14 500 samples.
+  double neighbour_factor = 1.6;  ///< Graph radius over spacing, [1, 4].
+  double aperture = 0.04;         ///< Width of a crack, metres, ≥ 0 and below the spacing.
+  double rounding = 0.25;         ///< R of the smooth intersection; limited by half of a block's inradius.
+  int min_block_samples = 12;     ///< A joint stops rather than cut off a chip of fewer samples; 1: chips stay.
+};
+
+/// A triangle mesh of one convex block, relative to the block's centre; counter-clockwise from outside.
+struct BlockMesh {
+  std::vector<Vec3> vertices;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+/// One convex block. Positions are relative to `centre`, in metres, in the tile's axes.
+struct Block {
+  Vec3 centre{0.0};            ///< In [0, side)³. The block may reach across the faces: it is one block all the same.
+  std::vector<Plane> planes;   ///< In a fixed order; each bounds a face.
+  double rounding = 0.0;       ///< R for this block.
+  double inradius = 0.0;       ///< Of the largest ball found around the centre.
+  Box bounds;                  ///< Of the planes' polytope, unrounded.
+  BlockMesh hull;              ///< CGAL's hull of the polytope's vertices.
+  double volume = 0.0;         ///< Of the hull, m³.
+  std::vector<Vec3> anchors;   ///< Spread through the block, for presence: some 8 to 32 of its samples.
+  std::uint32_t sample_count = 0;
+};
+
+/// What happened on the way, for reports; compare with Table 1 of the paper.
+struct TileStatistics {
+  std::size_t samples = 0, discs = 0, clusters = 0, merged_chips = 0;
+  double seconds = 0.0;
+  double filled_share = 0.0;        ///< Of the cube, by blocks; from volumes.
+  double overlap_share = 0.0;       ///< Of the cube covered twice or more, by random points.
+  double mean_planes = 0.0;
+  std::size_t max_planes = 0;
+  double plain_filled_share = 0.0;  ///< The same for plain hulls of the clusters, without snapping to joints.
+  double plain_mean_planes = 0.0;
+  std::size_t plain_max_planes = 0;
+};
+
+/// Blocks that tile space when repeated with period `side` along the three axes.
+struct Tile {
+  double side = 20.0;
+  BlockType type = BlockType::Equidimensional;
+  std::vector<Block> blocks;
+  TileStatistics statistics;
+};
+
+/// Makes a tile. Same options and seed: the same blocks, on every machine and thread count.
+///
+/// @throws ParameterError when an option is outside its bound. Cost: O(samples · joints that reach a cluster).
+/// Method: Paris et al. 2020 section 4, with decisions 3 to 6 of docs/decisions/fracture.md.
+[[nodiscard]] Tile make_tile(const TileOptions& options, Seed seed, const Task& task = {});
+
+}  // namespace outcrop

@@ -1,0 +1,34 @@
+/// Readers of elevation files: EXR, TIFF and GeoTIFF, PNG, SRTM .hgt.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "outcrop/terrain/heightfield.h"
+
+namespace outcrop {
+
+/// What the caller knows better than the file.
+struct HeightfieldOptions {
+  std::optional<double> cell_size;  ///< Metres, > 0; overrides the file's tags.
+  double height_scale = 1.0;        ///< Elevation = sample · scale + offset; ≠ 0, finite.
+  double height_offset = 0.0;       ///< Metres.
+};
+
+/// A grid and what had to be assumed about it, one line each, for the caller to show ("3 channels: took the first, R").
+struct HeightfieldFile {
+  ElevationGrid grid;
+  std::vector<std::string> notes;
+};
+
+/// Reads elevations in the file's own units (a 16-bit PNG sample of 1200 is 1200 m before scale and offset).
+///
+/// GeoTIFF: cell size, origin and nodata from tags 33550, 33922, 34264 and 42113; geographic rasters (degrees) get metres
+/// a degree at the raster's middle latitude. SRTM .hgt: big-endian 16-bit, -32768 is nodata, the name gives the corner.
+/// Without tags the cell is 1 m and the origin (0, 0).
+/// @throws InputError `path: expected …, got …`.
+[[nodiscard]] HeightfieldFile read_heightfield(const std::filesystem::path& path, const HeightfieldOptions& options = {});
+
+}  // namespace outcrop
