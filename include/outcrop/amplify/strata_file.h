@@ -53,6 +53,15 @@ struct StrataFile {
 /// @throws InputError with file, line and column.
 [[nodiscard]] StrataFile read_strata(const std::filesystem::path& path);
 
+/// What make_tile needs for a material, its zeros replaced by their defaults; `default_side` where it names no tile side.
+[[nodiscard]] TileOptions tile_options(const RockMaterial& material, double default_side);
+
+/// The relief's measures with their defaults; the period divides the tile's side, so that the relief repeats with it.
+struct RockRelief {
+  double period = 0.0, amplitude = 0.0;  ///< Metres.
+};
+[[nodiscard]] RockRelief rock_relief(const RockMaterial& material, double tile_side);
+
 /// The file with the given stem in the installed or source data folder: data/reliefs/<name>.png.
 /// @throws InputError listing the known names.
 [[nodiscard]] std::filesystem::path find_relief(std::string_view name);

@@ -1,0 +1,38 @@
+/// Scenes for polygonize: a tree of fields in JSON. Format: data/schemas/scene.schema.json.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "outcrop/core/task.h"
+#include "outcrop/implicit/field.h"
+
+namespace outcrop {
+
+/// What a scene file says.
+struct Scene {
+  FieldPtr field;
+  std::optional<Box> region;               ///< Named by the file, else where the field's support is known, a little grown.
+  std::optional<double> resolution;        ///< Metres, when the file names one.
+  std::vector<std::string> label_names;    ///< Label → name, in the order of "materials"; at least one.
+  std::vector<Vec3f> label_colours;        ///< Linear albedo, one a name.
+};
+
+/// Reads `{"version": 1, "field": {<kind>: {…}}, "region": …, "resolution": …, "materials": […]}`.
+///
+/// Files named inside are relative to the scene's folder.
+/// @throws InputError with file, line and column; Cancelled.
+[[nodiscard]] Scene read_scene(const std::filesystem::path& path, const Task& task = {});
+
+inline constexpr double kDefaultCells = 128;  ///< Cells along the longest side where nobody names a resolution.
+
+/// The signed distance to the closed mesh in a .ply, .obj or .stl file; voxel 0: its longest side / 128.
+/// @throws InputError.
+[[nodiscard]] FieldPtr mesh_field(const std::filesystem::path& path, double voxel = 0.0, const Task& task = {});
+
+/// The region in which a field of known support is meshed when nobody names one: its support, grown by 2 %.
+[[nodiscard]] std::optional<Box> default_region(const Field& field);
+
+}  // namespace outcrop

@@ -1,0 +1,174 @@
+#include "material_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "outcrop/core/data_path.h"
+
+namespace outcrop {
+namespace {
+
+constexpr double kPatternSide = 20.0;          // Metres: a JointPattern gives its lengths for a tile of this side.
+constexpr double kSamplesPerSide = 27.4;       // About 14 500 samples a tile, as in Table 1 of Paris et al. 2020.
+constexpr double kFinestSpacing = 1.0 / 100;   // Of the side: some 700 000 samples.
+constexpr double kCoarsestSpacing = 1.0 / 4;   // Of the side: below, a sample would neighbour its own copies.
+constexpr double kApertureShare = 0.002;       // Of the side: 4 cm at 20 m.
+constexpr double kReliefPeriodShare = 0.2;     // Of the side: about a block.
+constexpr double kReliefAmplitudeShare = 0.006;  // Of the side: 12 cm at 20 m.
+constexpr double kRoundingShare = 0.0125;      // Of the side: 25 cm at 20 m, as in the paper.
+
+/// The upward normal of a plane that falls by `dip` towards `direction`, clockwise from north; x east, y north.
+Vec3 plane_normal(double dip, double direction) {
+  return {std::sin(dip) * std::sin(direction), std::sin(dip) * std::cos(direction), std::cos(dip)};
+}
+
+/// @param pattern_from_metres  Turns metres of this tile into the pattern's, those of a 20 m tile.
+JointSet read_joint_set(const Json& json, JointSet set, double pattern_from_metres) {
+  JsonReader reader(json);
+  const bool turned = reader.has("dip_deg") || reader.has("dip_direction_deg");
+  const double dip = reader.number("dip_deg", 0.0, {0.0, 90.0});
+  const double direction = reader.number("dip_direction_deg", 0.0, {0.0, 360.0});
+  if (turned) set.normal = plane_normal(radians(dip), radians(direction));
+  set.kappa = reader.number("kappa", set.kappa, kPositive);
+  set.share = reader.number("share", set.share, kPositive);
+  if (const Json* key = reader.child("radius")) {
+    const std::vector<double> radius = reader.numbers("radius", {}, 2, kPositive);
+    if (radius[0] > radius[1]) key->fail("\"radius\": the smallest before the largest");
+    set.radius_lo = radius[0] * pattern_from_metres;
+    set.radius_hi = radius[1] * pattern_from_metres;
+  }
+  reader.finish();
+  return set;
+}
+
+/// The type's pattern with what the file says instead; nothing when it says nothing.
+std::optional<JointPattern> read_joints(JsonReader& reader, BlockType type, double pattern_from_metres) {
+  bool given = false;
+  for (const char* key : {"joint_sets", "discs", "irregular_share", "centre_spacing", "column_width"})
+    given = reader.has(key) || given;  // Asks for every key, so that the reader knows them all.
+  if (!given) return std::nullopt;
+  JointPattern pattern = joint_pattern(type);
+  if (const Json* sets = reader.child("joint_sets")) {
+    const std::vector<Json>& items = reader.array("joint_sets");
+    if (items.empty()) sets->fail("\"joint_sets\": at least one joint set", "none");
+    std::vector<JointSet> own;
+    for (std::size_t i = 0; i < items.size(); ++i)
+      own.push_back(read_joint_set(items[i], i < pattern.sets.size() ? pattern.sets[i] : JointSet{}, pattern_from_metres));
+    pattern.sets = std::move(own);
+  }
+  pattern.discs = reader.integer("discs", pattern.discs, 0, 10'000);
+  pattern.irregular_share = reader.number("irregular_share", pattern.irregular_share, {0.0, 1.0});
+  if (reader.has("centre_spacing"))
+    pattern.centre_spacing = reader.number("centre_spacing", 0.0, {0.0, 1000.0}) * pattern_from_metres;
+  if (reader.has("column_width"))
+    pattern.column_width = reader.number("column_width", 0.0, {0.0, 1000.0}) * pattern_from_metres;
+  return pattern;
+}
+
+/// Whether a length of the joints stands in metres: then the tile cannot be scaled to suit the terrain.
+bool has_joint_lengths(JsonReader& reader) {
+  if (reader.has("centre_spacing") || reader.has("column_width")) return true;
+  const std::vector<Json>& sets = reader.array("joint_sets");
+  return std::any_of(sets.begin(), sets.end(), [](const Json& set) { return JsonReader(set).has("radius"); });
+}
+
+void read_lengths(JsonReader& reader, RockMaterial& material) {
+  const double side = material.tile_side;
+  const bool known = side > 0.0;
+  const Bounds spacing = known ? Bounds{side * kFinestSpacing, side * kCoarsestSpacing} : kPositive;
+  if (reader.has("sample_spacing")) material.sample_spacing = reader.number("sample_spacing", 0.0, spacing);
+  // A crack as wide as the samples lie apart would leave no rock between two joints.
+  const double widest = !known ? 1000.0 : material.sample_spacing > 0.0 ? material.sample_spacing : side / kSamplesPerSide;
+  material.aperture = reader.number("aperture", material.aperture, {0.0, widest});
+  material.rounding = reader.number("rounding", material.rounding, {0.0, known ? side / 4.0 : 1000.0});
+}
+
+std::vector<std::string> known_reliefs() {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(data_path() / "reliefs", error))
+    if (entry.path().extension() == ".png") names.push_back(entry.path().stem().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::string listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text.empty() ? "none installed" : text;
+}
+
+}  // namespace
+
+RockMaterial read_material(JsonReader& reader, const std::filesystem::path& folder) {
+  RockMaterial material;
+  material.name = reader.string("name", material.name);
+  const std::vector<std::string_view> types = [] {
+    std::vector<std::string_view> names;
+    for (const BlockType type : kBlockTypes) names.push_back(name(type));
+    return names;
+  }();
+  material.block_type = kBlockTypes[reader.choice("block_type", 0, types)];
+  material.tile_side = reader.has("tile_side") ? reader.number("tile_side", 0.0, {0.1, 1000.0}) : 0.0;
+  if (material.tile_side == 0.0 && has_joint_lengths(reader)) material.tile_side = kPatternSide;
+  read_lengths(reader, material);
+  material.min_block_samples = reader.integer("min_block_samples", material.min_block_samples, 1, 10'000);
+  const double side = material.tile_side > 0.0 ? material.tile_side : kPatternSide;
+  material.joints = read_joints(reader, material.block_type, kPatternSide / side);
+  if (const Json* json = reader.child("relief")) {
+    JsonReader relief(*json);
+    if (const Json* image = relief.child("image")) material.relief = resolve_relief(*image, folder);
+    if (relief.has("period")) material.relief_period = relief.number("period", 0.0, kPositive);
+    if (relief.has("amplitude")) material.relief_amplitude = relief.number("amplitude", 0.0, {0.0, side / 4.0});
+    relief.finish();
+  }
+  const Vec3f& c = material.colour;
+  const std::vector<double> colour = reader.numbers("colour", {c.r, c.g, c.b}, 3, {0.0, 1.0});
+  if (reader.has("colour")) material.colour = Vec3f(colour[0], colour[1], colour[2]);
+  return material;
+}
+
+std::filesystem::path resolve_relief(const Json& image, const std::filesystem::path& folder) {
+  if (image.type != Json::Type::String || image.string.empty()) image.fail("the name or path of a relief image");
+  const std::filesystem::path path(image.string);
+  std::error_code error;
+  if (path.has_extension() || path.has_parent_path()) {
+    const std::filesystem::path file = path.is_absolute() ? path : folder / path;
+    if (std::filesystem::is_regular_file(file, error)) return file;
+    image.fail("a relief image", "\"" + file.string() + "\", which is no file");
+  }
+  const std::filesystem::path file = data_path() / "reliefs" / (image.string + ".png");
+  if (std::filesystem::is_regular_file(file, error)) return file;
+  image.fail("a relief image: a path, or one of " + listed(known_reliefs()), "\"" + image.string + "\"");
+}
+
+std::filesystem::path find_relief(std::string_view name) {
+  const std::filesystem::path file = data_path() / "reliefs" / (std::string(name) + ".png");
+  std::error_code error;
+  if (std::filesystem::is_regular_file(file, error)) return file;
+  throw InputError(file.string() + ": expected one of the reliefs " + listed(known_reliefs()) + ", got \"" +
+                   std::string(name) + "\"");
+}
+
+TileOptions tile_options(const RockMaterial& material, double default_side) {
+  TileOptions options;
+  options.type = material.block_type;
+  if (material.joints) options.pattern = *material.joints;
+  options.side = material.tile_side > 0.0 ? material.tile_side : default_side;
+  options.spacing = material.sample_spacing;
+  options.aperture = material.aperture > 0.0 ? material.aperture : kApertureShare * options.side;
+  options.rounding = material.rounding > 0.0 ? material.rounding : kRoundingShare * options.side;
+  options.min_block_samples = material.min_block_samples;
+  return options;
+}
+
+RockRelief rock_relief(const RockMaterial& material, double tile_side) {
+  const double wanted = material.relief_period > 0.0 ? material.relief_period : kReliefPeriodShare * tile_side;
+  const double repeats = std::max(1.0, std::round(tile_side / wanted));
+  const double amplitude = material.relief_amplitude;
+  return {tile_side / repeats, amplitude >= 0.0 ? amplitude : kReliefAmplitudeShare * tile_side};
+}
+
+}  // namespace outcrop

@@ -1,0 +1,19 @@
+/// The keys of one rock material, shared by strata.json and the tiles of scenes.
+#pragma once
+
+#include <filesystem>
+
+#include "outcrop/amplify/strata_file.h"
+#include "outcrop/core/json.h"
+
+namespace outcrop {
+
+inline constexpr Bounds kPositive{.lo = 0.0, .open_lo = true};
+
+/// Reads a material's keys; the caller calls `finish()`. @param folder  Relative relief paths start here.
+[[nodiscard]] RockMaterial read_material(JsonReader& reader, const std::filesystem::path& folder);
+
+/// The image that a "relief" key means: the name of an installed relief, or a path relative to `folder`.
+[[nodiscard]] std::filesystem::path resolve_relief(const Json& image, const std::filesystem::path& folder);
+
+}  // namespace outcrop
