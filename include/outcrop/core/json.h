@@ -22,10 +22,10 @@ class Json {
   Type type = Type::Null;
   bool boolean = false;
   double number = 0.0;
-  std::string string;
-  std::vector<Json> items;                             ///< Of an array.
-  std::vector<std::pair<std::string, Json>> members;   ///< Of an object, in file order; no key twice.
-  std::shared_ptr<const std::string> file;             ///< Name for messages.
+  std::string string{};
+  std::vector<Json> items{};                           ///< Of an array.
+  std::vector<std::pair<std::string, Json>> members{}; ///< Of an object, in file order; no key twice.
+  std::shared_ptr<const std::string> file{};           ///< Name for messages.
   int line = 0;                                        ///< 1-based; of a member, where its key stands.
   int column = 0;
 
@@ -83,6 +83,8 @@ class JsonReader {
 };
 
 /// Writes JSON text: values in call order, indented by two spaces, shortest numbers that read back the same.
+///
+/// Inside an array the key is ignored. Numbers that are not finite become null. Bytes of strings are taken as UTF-8.
 class JsonWriter {
  public:
   JsonWriter& begin_object(std::string_view key = {});
@@ -99,9 +101,19 @@ class JsonWriter {
   [[nodiscard]] std::string text() const;
 
  private:
-  void next(std::string_view key);
+  /// An object or array that is still open.
+  struct Level {
+    bool array = false;
+    bool empty = true;
+    bool broken = false;  ///< Over several lines: its end gets a line too.
+  };
+
+  JsonWriter& begin(std::string_view key, bool array);
+  JsonWriter& end();
+  void next(std::string_view key, bool on_its_own_line);
+
   std::string text_;
-  std::vector<bool> first_;
+  std::vector<Level> levels_;
 };
 
 }  // namespace outcrop

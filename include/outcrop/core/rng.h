@@ -28,12 +28,14 @@ class Rng {
   constexpr double uniform(double lo, double hi) noexcept { return lo + (hi - lo) * uniform(); }
   /// Uniform in {0, …, n − 1}, n > 0; bias below n · 2⁻⁶⁴.
   constexpr std::uint64_t below(std::uint64_t n) noexcept {
-    return static_cast<std::uint64_t>((static_cast<unsigned __int128>(next()) * n) >> 64);
+    return static_cast<std::uint64_t>((static_cast<Wide>(next()) * n) >> 64);
   }
   /// Uniform on the unit sphere.
   Vec3 direction() noexcept;
 
  private:
+  __extension__ using Wide = unsigned __int128;
+
   static constexpr std::uint64_t kWeyl = 0x9E3779B97F4A7C15ull;
   static constexpr std::uint64_t kOdd = 0xD1342543DE82EF95ull;
   static constexpr std::uint64_t mix(std::uint64_t z) noexcept {
