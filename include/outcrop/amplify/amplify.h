@@ -34,7 +34,9 @@ struct RockReport {
 
 struct Amplified {
   FieldPtr field;                          ///< The amplified terrain, world (map) coordinates.
-  FieldPtr terrain;                        ///< The terrain as it came.
+  FieldPtr ground;                         ///< The same without holes where data are missing.
+  FieldPtr hole;                           ///< > 0 where data are missing and holes are wanted, else null.
+  FieldPtr terrain;                        ///< The terrain as it came, holes filled.
   Box region;                              ///< Wanted rectangle with the heights that the surface can take, and a floor.
   std::vector<std::string> label_names;    ///< Label → name: the materials in order, then "ground".
   std::vector<Vec3f> label_colours;

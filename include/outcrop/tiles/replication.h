@@ -1,0 +1,106 @@
+/// The replication node: the blocks of one tile, repeated over space where presence says so.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <unordered_map>
+#include <vector>
+
+#include "outcrop/core/task.h"
+#include "outcrop/fracture/tile.h"
+#include "outcrop/implicit/field.h"
+#include "outcrop/implicit/rounded_polytope.h"
+#include "outcrop/tiles/presence.h"
+
+namespace outcrop {
+
+/// A tile and how it stands in the world: p_world = origin + world_from_tile · p_tile; the lattice has period tile.side.
+struct Rock {
+  Tile tile;
+  Warp warp;                    ///< The relief's period should divide the tile's side.
+  Label label = 0;
+  Mat3 world_from_tile{1.0};    ///< A rotation.
+  Vec3 origin{0.0};             ///< World position of a corner of cell (0, 0, 0).
+};
+
+/// Where the blocks stand and how their cracks close.
+struct ReplicationOptions {
+  Box domain;                   ///< World; blocks are placed when they may matter inside.
+  Criterion criterion;          ///< Asked of every block's anchors; null: every block is present.
+  std::function<double(const Vec3&)> slope;    ///< Steepness at an anchor, radians; null: from the terrain's gradient there.
+  std::function<bool(const Box&)> visible;     ///< False: nothing in this box can be seen, no block is placed there; null: true.
+  FieldPtr crack_floor;         ///< Below this surface cracks close; null: they stay open.
+  double closure = 0.0;         ///< Metres by which blocks grow below the crack floor, ≥ 0.
+  double closure_slope = 0.05;  ///< Growth per metre below the crack floor, > 0.
+  double swelling = 0.0;        ///< Metres by which blocks grow everywhere, to weld cracks that a mesh could not resolve.
+  double min_inradius = 0.0;    ///< Blocks with a smaller inner ball are not placed.
+  double cap = 0.4;             ///< The field's largest value, metres, > 0: away from blocks it is this constant.
+};
+
+/// t(p) = min(cap, min over present blocks of b_i(p) − swelling − growth(p)), growth in [0, closure] below the crack floor.
+///
+/// A block that is missing is not evaluated. Presence is decided once a (cell, block), when the node is built, and held as
+/// one bit each; the tile's lists of blocks a voxel are baked once, whatever the presence. Memory: O(cells with blocks) +
+/// O(blocks · voxels they touch) for the tile. Cost of a value: the one to three blocks whose boxes hold the point.
+/// Method: Paris et al. 2020, section 5, with the sign and the presence of docs/decisions/placement.md.
+class Replication final : public Field {
+ public:
+  /// @param terrain  Negative in rock; its values, gradients and labels feed the presence criterion.
+  /// @throws ParameterError; Cancelled.
+  Replication(Rock rock, FieldPtr terrain, ReplicationOptions options, const Task& task = {});
+
+  void values(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept override;
+  [[nodiscard]] double lipschitz() const noexcept override;
+  [[nodiscard]] Interval bound(const Box& box) const noexcept override;
+  [[nodiscard]] FieldPtr narrow(const Box& box) const override;
+  void labels(const Points& points, std::span<Label> labels) const noexcept override;
+
+  /// Blocks present.
+  [[nodiscard]] std::size_t block_count() const noexcept { return block_count_; }
+  /// Is block `block` of lattice cell `cell` present?
+  [[nodiscard]] bool block_present(const IVec3& cell, std::size_t block) const noexcept;
+  /// Bytes of the tile's field functions and lists.
+  [[nodiscard]] std::size_t tile_bytes() const noexcept;
+
+ private:
+  friend class PlacedBlocks;
+  /// A block whose box overlaps a voxel: its copy is owned by the voxel's cell + offset.
+  struct Entry {
+    std::uint32_t block;
+    std::int8_t dx, dy, dz;
+  };
+  struct Shape {
+    PolytopeKernel kernel;
+    Vec3 centre;   ///< Tile frame.
+    Box support;   ///< Relative to the centre; outside it the block's value is at least `cap`.
+    Box world;     ///< Of the polytope, world axes, relative to the world position of the centre.
+    double inradius;
+  };
+
+  [[nodiscard]] Vec3 to_tile(const Vec3& world) const noexcept { return tile_from_world_ * (world - rock_.origin); }
+  [[nodiscard]] Box to_tile(const Box& world) const noexcept;
+  void bake_lists();
+  void place_blocks(const Field& terrain, const Task& task);
+  [[nodiscard]] std::vector<std::uint64_t> present_blocks(const IVec3& cell, const Field& terrain) const;
+  /// Calls visit(block, owner cell) for each present block whose support may overlap the box, once each.
+  template <class Visit>
+  void visit_blocks(const Box& tile_box, Visit&& visit) const;
+  [[nodiscard]] Interval block_bound(const Shape& shape, const Vec3& position, const Box& tile_box,
+                                     const Interval& growth) const noexcept;
+  [[nodiscard]] Interval growth_bound(const Box& box) const noexcept;
+
+  Rock rock_;
+  ReplicationOptions options_;
+  Mat3 tile_from_world_;
+  std::vector<Shape> shapes_;
+  int voxels_ = 1;  ///< Per side.
+  std::vector<std::uint32_t> first_;
+  std::vector<Entry> entries_;
+  std::unordered_map<std::uint64_t, std::vector<std::uint64_t>> present_;  ///< Cell → one bit a block.
+  std::size_t block_count_ = 0;
+  double lipschitz_ = 1.0;
+  double deepest_ = 0.0;  ///< No value is below − deepest_.
+};
+
+}  // namespace outcrop

@@ -1,0 +1,283 @@
+#include "outcrop/amplify/amplify.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "outcrop/core/error.h"
+#include "outcrop/core/rng.h"
+#include "outcrop/implicit/combine.h"
+#include "outcrop/terrain/terrain_field.h"
+#include "outcrop/tiles/replication.h"
+#include "rock_zone.h"
+
+namespace outcrop {
+namespace {
+
+constexpr double kReachInBlocks = 1.3;       // Mean block sizes; recess 1 hides the base behind whole blocks.
+constexpr double kRasterPerReach = 6.0;      // Raster nodes of the rock zone across its reach.
+constexpr double kPlaceableShare = 0.7;      // Of a tile's volume; below that, its blocks are too small for the resolution.
+constexpr double kCellsInSmallestBlock = 2.0;  // Design decision 10.
+constexpr double kClosureSlope = 0.05;       // Blocks grow by this much a metre below the crack floor.
+constexpr int kCoverageProbes = 2000;
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// The terrain with the strata's materials as labels.
+class StratifiedTerrain final : public Field {
+ public:
+  StratifiedTerrain(FieldPtr terrain, Strata strata) : terrain_(std::move(terrain)), strata_(std::move(strata)) {}
+  void values(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept override {
+    terrain_->values(points, values, gradients);
+  }
+  [[nodiscard]] double lipschitz() const noexcept override { return terrain_->lipschitz(); }
+  [[nodiscard]] Interval bound(const Box& box) const noexcept override { return terrain_->bound(box); }
+  void labels(const Points& points, std::span<Label> labels) const noexcept override {
+    for (std::size_t i = 0; i < points.size(); ++i) labels[i] = strata_.material(points[i]);
+  }
+
+ private:
+  FieldPtr terrain_;
+  Strata strata_;
+};
+
+/// The horizontal distance to missing data: intersected with a solid it leaves holes.
+class HoleField final : public Field {
+ public:
+  explicit HoleField(Heightfield heightfield) : heightfield_(std::move(heightfield)) {}
+  void values(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept override {
+    for (std::size_t i = 0; i < points.size(); ++i) values[i] = heightfield_.hole_distance(points.x[i], points.y[i]);
+    constexpr double kStep = 1e-3;
+    for (std::size_t i = 0; i < gradients.size(); ++i) {
+      const double x = points.x[i], y = points.y[i];
+      gradients[i] = Vec3(heightfield_.hole_distance(x + kStep, y) - heightfield_.hole_distance(x - kStep, y),
+                          heightfield_.hole_distance(x, y + kStep) - heightfield_.hole_distance(x, y - kStep), 0.0) /
+                     (2.0 * kStep);
+    }
+  }
+  [[nodiscard]] double lipschitz() const noexcept override { return std::sqrt(2.0); }
+  [[nodiscard]] Interval bound(const Box& box) const noexcept override {
+    return heightfield_.hole_bound(Vec2(box.lo), Vec2(box.hi));
+  }
+
+ private:
+  Heightfield heightfield_;
+};
+
+struct MadeRock {
+  Tile tile;
+  double block_size = 0.0;  ///< Cube root of the mean block volume.
+  bool placeable = false;   ///< Large enough for the resolution.
+};
+
+double mean_volume(const Tile& tile) {
+  double sum = 0.0;
+  for (const Block& block : tile.blocks) sum += block.volume;
+  return sum / static_cast<double>(std::max<std::size_t>(tile.blocks.size(), 1));
+}
+
+MadeRock make_rock(const RockMaterial& material, double default_side, const AmplifyOptions& options, Seed seed, const Task& task) {
+  const double side = material.tile_side > 0.0 ? material.tile_side : default_side;
+  TileOptions t{.type = material.block_type, .side = side, .spacing = material.sample_spacing};
+  if (material.joints) t.pattern = *material.joints;
+  t.aperture = material.aperture > 0.0 ? material.aperture : 0.002 * side;
+  t.rounding = material.rounding > 0.0 ? material.rounding : 0.0125 * side;
+  t.min_block_samples = material.min_block_samples;
+  MadeRock rock{.tile = make_tile(t, seed, task)};
+  rock.block_size = std::cbrt(mean_volume(rock.tile));
+  double all = 0.0, large = 0.0;
+  for (const Block& block : rock.tile.blocks) {
+    all += block.volume;
+    if (2.0 * block.inradius >= kCellsInSmallestBlock * options.resolution) large += block.volume;
+  }
+  rock.placeable = large >= kPlaceableShare * all;
+  return rock;
+}
+
+Warp make_warp(const RockMaterial& material, double side, double resolution) {
+  const double amplitude = material.relief_amplitude < 0.0 ? 0.006 * side : material.relief_amplitude;
+  if (amplitude == 0.0) return {};
+  const double wanted = material.relief_period > 0.0 ? material.relief_period : side / 5.0;
+  const double period = side / std::max(1.0, std::round(side / wanted));
+  const auto path = material.relief.empty() ? find_relief("rough") : material.relief;
+  const ReliefPtr relief = read_relief(path, period);
+  return {std::make_shared<Relief>(relief->smoothed(2.0 * resolution)), amplitude};
+}
+
+RockReport report_of(const RockMaterial& material, const MadeRock& rock) {
+  RockReport report{.material = material.name, .type = rock.tile.type, .tile = rock.tile.statistics};
+  report.tile_blocks = rock.tile.blocks.size();
+  for (const Block& block : rock.tile.blocks) {
+    report.block_volumes.push_back(block.volume);
+    report.block_faces.push_back(block.planes.size());
+    report.block_sizes.push_back(block.bounds.size());
+  }
+  return report;
+}
+
+/// Walks from the air side of the input surface inwards along its normal and asks who is met first.
+void measure(Amplified& result, const Field& rock, const RockZone& zone, double reach, double slope, Seed seed) {
+  const Vec2 lo(result.region.lo), hi(result.region.hi);
+  const double threshold = std::cos(slope);
+  int probes = 0, on_blocks = 0;
+  double offset = 0.0;
+  for (int i = 0; i < kCoverageProbes * 50 && probes < kCoverageProbes; ++i) {
+    Rng rng(seed, "coverage", static_cast<std::uint64_t>(i));
+    const double x = rng.uniform(lo.x, hi.x);
+    const double y = rng.uniform(lo.y, hi.y);
+    if (zone.recess.at(x, y).h <= 0.0) continue;
+    const double h = -result.terrain->value({x, y, 0.0});
+    const Vec3 p(x, y, h);
+    const Vec3 n = glm::normalize(result.terrain->gradient(p));
+    if (n.z > threshold) continue;
+    ++probes;
+    const double step = 0.02 * reach;
+    for (double t = reach; t > -2.0 * reach; t -= step) {
+      const Vec3 q = p + t * n;
+      if (result.field->value(q) >= 0.0) continue;
+      // Blocks are the surface where their value is the field's own.
+      if (rock.value(q) <= result.field->value(q)) ++on_blocks;
+      offset += t;
+      break;
+    }
+  }
+  if (probes == 0) return;
+  result.rock_coverage = static_cast<double>(on_blocks) / probes;
+  result.mean_offset = offset / probes;
+}
+
+}  // namespace
+
+Amplified amplify(const Heightfield& heightfield, const StrataFile& strata_file, const AmplifyOptions& options, const Task& task) {
+  require(options.resolution > 0.0, "resolution", "> 0 m", options.resolution);
+  const Vec2 lo = glm::max(options.region_lo, heightfield.lo());
+  const Vec2 hi = glm::min(options.region_hi, heightfield.hi());
+  require(lo.x < hi.x && lo.y < hi.y, "region", "a rectangle that overlaps the terrain", "one outside of it or without area");
+
+  // Tiles.
+  auto start = std::chrono::steady_clock::now();
+  Amplified result;
+  const double default_side = default_tile_side(heightfield);
+  const std::size_t material_count = strata_file.materials.size();
+  std::vector<char> used(material_count, 0);
+  if (strata_file.strata.layers.empty()) used[0] = 1;
+  for (const Stratum& layer : strata_file.strata.layers) used[layer.material] = 1;
+  std::vector<MadeRock> rocks(material_count);
+  double largest_block = 0.0;
+  for (std::size_t m = 0; m < material_count; ++m) {
+    const RockMaterial& material = strata_file.materials[m];
+    result.label_names.push_back(material.name);
+    result.label_colours.push_back(material.colour);
+    if (!used[m]) continue;
+    task.check();
+    rocks[m] = make_rock(material, default_side, options, options.seed + m, task);
+    result.rocks.push_back(report_of(material, rocks[m]));
+    result.mean_block_size = std::max(result.mean_block_size, rocks[m].block_size);
+    if (!rocks[m].placeable) continue;
+    largest_block = std::max(largest_block, rocks[m].block_size);
+  }
+  const Label ground = static_cast<Label>(material_count);
+  result.label_names.push_back("ground");
+  result.label_colours.push_back(strata_file.ground_colour);
+  result.tile_seconds = seconds_since(start);
+
+  // Terrain, strata and the zone where rock may stand.
+  start = std::chrono::steady_clock::now();
+  const auto filled = std::make_shared<TerrainField>(heightfield, NodataPolicy::Fill);
+  Strata strata = strata_file.strata;
+  strata.reference += heightfield.lo();
+  if (strata_file.relative_tops) {
+    const Interval heights = heightfield.height_bound(heightfield.lo(), heightfield.hi());
+    for (Stratum& layer : strata.layers) layer.top = heights.lo + layer.top * heights.width();
+  }
+  const auto stratified = std::make_shared<StratifiedTerrain>(filled, strata);
+  const Placement& placement = strata_file.placement;
+  const double reach = kReachInBlocks * placement.recess * largest_block;
+  FieldPtr rock_field;
+  RockZone zone{heightfield, heightfield, heightfield, true};
+  if (reach > 0.0)
+    zone = make_rock_zone(heightfield,
+                          {.lo = lo - 2.0 * reach, .hi = hi + 2.0 * reach, .slope = placement.slope, .reach = reach,
+                           .spacing = reach / kRasterPerReach},
+                          task);
+
+  FieldPtr field = labelled(filled, ground);
+  const Interval heights = heightfield.height_bound(lo, hi);
+  double top = heights.hi;
+  if (!zone.empty) {
+    const FieldPtr base = displaced_terrain(filled, zone.recess, 1.0);
+    const FieldPtr clip = displaced_terrain(filled, zone.advance, -1.0);
+    const auto visible = [&](const Box& box) {
+      const Vec2 a(box.lo), b(box.hi);
+      if (zone.recess.height_bound(a, b).hi <= 0.0 && zone.advance.height_bound(a, b).hi <= 0.0) return false;
+      return base->bound(box).hi > 0.0 && clip->bound(box).lo < 0.0;
+    };
+    const auto slope = [&](const Vec3& p) { return zone.nearby.at(p.x, p.y).h > 0.0 ? 0.5 * kPi : 0.0; };
+    const Box domain{Vec3(lo - reach, heights.lo - 4.0 * reach), Vec3(hi + reach, heights.hi + 2.0 * reach)};
+    std::vector<FieldPtr> placed;
+    std::size_t report = 0;
+    for (std::size_t m = 0; m < material_count; ++m) {
+      if (!used[m]) continue;
+      RockReport& rock_report = result.rocks[report++];
+      if (!rocks[m].placeable) continue;
+      const RockMaterial& material = strata_file.materials[m];
+      const double azimuth = placement.lattice_azimuth;
+      const Mat3 turn(Vec3(std::cos(azimuth), std::sin(azimuth), 0.0), Vec3(-std::sin(azimuth), std::cos(azimuth), 0.0),
+                      Vec3(0.0, 0.0, 1.0));
+      const double size = rocks[m].block_size;
+      const double side = rocks[m].tile.side;
+      const double aperture = material.aperture > 0.0 ? material.aperture : 0.002 * side;
+      // Cracks narrower than two cells are welded everywhere: a mesh would show them as scattered holes.
+      const double swelling =
+          0.5 * aperture * std::clamp(2.0 - aperture / options.resolution, 0.0, 1.0) * (1.0 + 1e-3);
+      const double crack = placement.crack_depth * size / reach;
+      ReplicationOptions replication{
+          .domain = domain,
+          .criterion = all_of({distance_between(placement.distance_lo * size, placement.distance_hi * size),
+                               slope_at_least(placement.slope), material_is(static_cast<Label>(m))}),
+          .slope = slope,
+          .visible = visible,
+          .crack_floor = displaced_terrain(filled, zone.recess, crack),
+          // Half the crack, and the grooves that rounding leaves along edges (at most R/3 where three faces meet).
+          .closure = 0.5 * aperture + 0.34 * (material.rounding > 0.0 ? material.rounding : 0.0125 * side),
+          .closure_slope = kClosureSlope,
+          .swelling = swelling,
+          .min_inradius = 0.5 * kCellsInSmallestBlock * options.resolution,
+          .cap = 0.1 * size};
+      auto node = std::make_shared<Replication>(
+          Rock{.tile = std::move(rocks[m].tile), .warp = make_warp(material, side, options.resolution),
+               .label = static_cast<Label>(m), .world_from_tile = strata.world_from_bedding() * turn,
+               .origin = Vec3(heightfield.lo(), 0.0)},
+          stratified, std::move(replication), task);
+      rock_report.replicated_blocks = node->block_count();
+      rock_report.bytes = node->tile_bytes();
+      placed.push_back(std::move(node));
+    }
+    rock_field = union_of(std::move(placed));
+    field = rock_on_terrain(filled, zone, rock_field, stratified, ground);
+    top = heights.hi + reach;
+  }
+  result.terrain = filled;
+  result.ground = field;
+  const bool holes = heightfield.has_holes() && strata_file.nodata == NodataPolicy::Hole;
+  if (holes) {
+    result.hole = std::make_shared<HoleField>(heightfield);
+    field = intersection_of({field, labelled(result.hole, ground)});
+  }
+  result.field = std::move(field);
+
+  const double margin = std::max({3.0 * reach, 4.0 * options.resolution, 0.02 * std::max(hi.x - lo.x, hi.y - lo.y)});
+  result.region = {Vec3(lo, heights.lo - margin), Vec3(hi, top + 2.0 * options.resolution)};
+  if (rock_field) {
+    task.begin("measuring the rock", 0);
+    measure(result, *rock_field, zone, reach, placement.slope, options.seed);
+  }
+  result.placement_seconds = seconds_since(start);
+  return result;
+}
+
+}  // namespace outcrop

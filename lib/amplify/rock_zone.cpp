@@ -1,0 +1,288 @@
+#include "rock_zone.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "outcrop/core/parallel.h"
+
+namespace outcrop {
+namespace {
+
+constexpr std::size_t kChunk = 256;
+
+/// A raster of nodes over a rectangle, rows from the south.
+struct Raster {
+  int width = 0, height = 0;
+  Vec2 lo{0.0};
+  double spacing = 1.0;
+
+  [[nodiscard]] std::size_t index(int column, int row) const { return static_cast<std::size_t>(row) * width + column; }
+  [[nodiscard]] Vec2 node(int column, int row) const { return lo + spacing * Vec2(column, row); }
+
+  [[nodiscard]] Heightfield layer(const std::vector<float>& nodes) const {
+    ElevationGrid grid{.width = width, .height = height, .cell_x = spacing, .cell_y = spacing, .origin = lo};
+    grid.elevations.resize(nodes.size());
+    for (int row = 0; row < height; ++row)
+      std::copy_n(nodes.begin() + static_cast<std::ptrdiff_t>(index(0, row)), width,
+                  grid.elevations.begin() + static_cast<std::ptrdiff_t>(index(0, height - 1 - row)));
+    return Heightfield(std::move(grid), Interpolation::Bilinear);
+  }
+};
+
+struct Offset {
+  int dx, dy;
+  double distance;
+};
+
+/// Raster offsets within `radius`, nearest first.
+std::vector<Offset> disc_offsets(double radius, double spacing) {
+  const int reach = static_cast<int>(std::ceil(radius / spacing));
+  std::vector<Offset> offsets;
+  for (int dy = -reach; dy <= reach; ++dy)
+    for (int dx = -reach; dx <= reach; ++dx) {
+      const double distance = spacing * std::hypot(dx, dy);
+      if (distance <= radius + spacing) offsets.push_back({dx, dy, distance});
+    }
+  std::ranges::stable_sort(offsets, {}, &Offset::distance);
+  return offsets;
+}
+
+Box flat_box(const Vec2& lo, const Vec2& hi) { return {Vec3(lo, 0.0), Vec3(hi, 0.0)}; }
+
+class DisplacedTerrain final : public Field {
+ public:
+  DisplacedTerrain(FieldPtr terrain, Heightfield layer, double factor, const Box& rectangle)
+      : terrain_(std::move(terrain)), layer_(std::move(layer)), factor_(factor) {
+    lipschitz_ = terrain_->lipschitz() + std::abs(factor_) * layer_.slope_bound(Vec2(rectangle.lo), Vec2(rectangle.hi));
+  }
+
+  void values(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept override {
+    terrain_->values(points, values, gradients);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Heightfield::Sample s = layer_.at(points.x[i], points.y[i]);
+      values[i] += factor_ * s.h;
+      if (!gradients.empty()) gradients[i] += factor_ * Vec3(s.hx, s.hy, 0.0);
+    }
+  }
+  [[nodiscard]] double lipschitz() const noexcept override { return lipschitz_; }
+  [[nodiscard]] Interval bound(const Box& box) const noexcept override {
+    const Interval f = terrain_->bound(box);
+    const Interval e = layer_.height_bound(Vec2(box.lo), Vec2(box.hi));
+    return {f.lo + std::min(factor_ * e.lo, factor_ * e.hi), f.hi + std::max(factor_ * e.lo, factor_ * e.hi)};
+  }
+  [[nodiscard]] FieldPtr narrow(const Box& box) const override {
+    return std::make_shared<DisplacedTerrain>(terrain_->narrow(box), layer_, factor_, box);
+  }
+
+ private:
+  FieldPtr terrain_;
+  Heightfield layer_;
+  double factor_;
+  double lipschitz_ = 1.0;
+};
+
+/// See rock_on_terrain. A null rock is one that cannot be the surface here; `has_base_` is false where the base cannot.
+class RockOnTerrain final : public Field {
+ public:
+  RockOnTerrain(FieldPtr terrain, RockZone zone, FieldPtr rock, FieldPtr strata, Label ground, bool has_base,
+                const Box& rectangle)
+      : terrain_(std::move(terrain)), zone_(std::move(zone)), rock_(std::move(rock)), strata_(std::move(strata)),
+        ground_(ground), has_base_(has_base) {
+    const Vec2 lo(rectangle.lo), hi(rectangle.hi);
+    lipschitz_ = terrain_->lipschitz() + std::max(zone_.recess.slope_bound(lo, hi), zone_.advance.slope_bound(lo, hi));
+    if (rock_) lipschitz_ = std::max(lipschitz_, rock_->lipschitz());
+  }
+
+  void values(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept override {
+    for (std::size_t first = 0; first < points.size(); first += kChunk) {
+      const std::size_t count = std::min(kChunk, points.size() - first);
+      chunk(points.subspan(first, count), values.subspan(first, count),
+            gradients.empty() ? gradients : gradients.subspan(first, count));
+    }
+  }
+
+  [[nodiscard]] double lipschitz() const noexcept override { return lipschitz_; }
+
+  [[nodiscard]] Interval bound(const Box& box) const noexcept override { return parts(box).whole; }
+
+  [[nodiscard]] FieldPtr narrow(const Box& box) const override {
+    const Parts p = parts(box);
+    if (p.outside) return terrain_->narrow(box);
+    // min and max return one of their arguments: a child that loses everywhere in the box is dropped to the bit.
+    const bool rock_loses = !rock_ || (has_base_ && p.rock.lo > p.base.hi);
+    const bool base_loses = !has_base_ || (rock_ && p.base.lo > p.rock.hi);
+    return std::make_shared<RockOnTerrain>(terrain_->narrow(box), zone_, rock_loses ? nullptr : rock_->narrow(box), strata_,
+                                           ground_, !base_loses, box);
+  }
+
+  void labels(const Points& points, std::span<Label> labels) const noexcept override {
+    strata_->labels(points, labels);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Vec3 p = points[i];
+      const double recess = zone_.recess.at(p.x, p.y).h;
+      if (recess <= 0.0 && zone_.advance.at(p.x, p.y).h <= 0.0) {
+        labels[i] = ground_;
+      } else if (rock_ && (!has_base_ || rock_->value(p) <= terrain_->value(p) + recess)) {
+        rock_->labels(points.subspan(i, 1), labels.subspan(i, 1));
+      }
+    }
+  }
+
+ private:
+  struct Parts {
+    bool outside;  ///< Both envelopes are 0 in the box.
+    Interval base, rock, whole;
+  };
+
+  [[nodiscard]] Parts parts(const Box& box) const noexcept {
+    const Vec2 lo(box.lo), hi(box.hi);
+    const Interval recess = zone_.recess.height_bound(lo, hi);
+    const Interval advance = zone_.advance.height_bound(lo, hi);
+    const Interval f = terrain_->bound(box);
+    Parts p{.outside = recess.hi <= 0.0 && advance.hi <= 0.0, .base = f, .rock = f, .whole = f};
+    if (p.outside) return p;
+    p.base = {f.lo + std::max(recess.lo, 0.0), f.hi + recess.hi};
+    const Interval clip{f.lo - advance.hi, f.hi - std::max(advance.lo, 0.0)};
+    if (!rock_) {
+      p.whole = outcrop::max(clip, p.base);
+      return p;
+    }
+    // Where all of the box is air above the clip or rock below the base, the blocks need not be asked.
+    if (has_base_ && (clip.lo > 0.0 || p.base.hi < 0.0)) {
+      constexpr double kInfinity = std::numeric_limits<double>::infinity();
+      p.rock = {-kInfinity, kInfinity};
+      p.whole = {clip.lo, std::max(clip.hi, p.base.hi)};
+      return p;
+    }
+    p.rock = rock_->bound(box);
+    p.whole = outcrop::max(clip, has_base_ ? outcrop::min(p.base, p.rock) : p.rock);
+    return p;
+  }
+
+  void chunk(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept {
+    const std::size_t n = points.size();
+    const bool wants_gradients = !gradients.empty();
+    terrain_->values(points, values, gradients);
+    std::array<Heightfield::Sample, kChunk> recess, advance;
+    bool any = false;
+    for (std::size_t i = 0; i < n; ++i) {
+      recess[i] = zone_.recess.at(points.x[i], points.y[i]);
+      advance[i] = zone_.advance.at(points.x[i], points.y[i]);
+      any = any || recess[i].h > 0.0 || advance[i].h > 0.0;
+    }
+    if (!any) return;
+    std::array<double, kChunk> rock;
+    std::array<Vec3, kChunk> rock_gradients;
+    if (rock_)
+      rock_->values(points, {rock.data(), n}, wants_gradients ? std::span(rock_gradients).first(n) : std::span<Vec3>{});
+    for (std::size_t i = 0; i < n; ++i) {
+      const double f = values[i];
+      const bool rock_wins = rock_ && (!has_base_ || rock[i] < f + recess[i].h);
+      const double inner = rock_wins ? rock[i] : f + recess[i].h;
+      const double clip = f - advance[i].h;
+      values[i] = std::max(clip, inner);
+      if (!wants_gradients) continue;
+      if (clip > inner)
+        gradients[i] -= Vec3(advance[i].hx, advance[i].hy, 0.0);
+      else if (rock_wins)
+        gradients[i] = rock_gradients[i];
+      else
+        gradients[i] += Vec3(recess[i].hx, recess[i].hy, 0.0);
+    }
+  }
+
+  FieldPtr terrain_;
+  RockZone zone_;
+  FieldPtr rock_, strata_;
+  Label ground_;
+  bool has_base_;
+  double lipschitz_ = 1.0;
+};
+
+}  // namespace
+
+RockZone make_rock_zone(const Heightfield& heightfield, const RockZoneOptions& options, const Task& task) {
+  const Vec2 extent = options.hi - options.lo;
+  const Raster raster{.width = static_cast<int>(std::ceil(extent.x / options.spacing)) + 1,
+                      .height = static_cast<int>(std::ceil(extent.y / options.spacing)) + 1,
+                      .lo = options.lo,
+                      .spacing = options.spacing};
+  const std::size_t count = static_cast<std::size_t>(raster.width) * raster.height;
+  const double steep_tangent = std::tan(options.slope);
+  std::vector<float> ground(count);
+  std::vector<char> steep(count);
+  const auto rows = static_cast<std::size_t>(raster.height);
+  task.begin("finding steep ground", 2 * rows);
+  parallel_for(rows, [&](std::size_t r) {
+    const int row = static_cast<int>(r);
+    for (int column = 0; column < raster.width; ++column) {
+      const Vec2 p = raster.node(column, row);
+      ground[raster.index(column, row)] = static_cast<float>(heightfield.at(p.x, p.y).h);
+      // A node is steep when the ground about it is, so that no flat point lies in a raster cell with a steep node.
+      bool is_steep = true;
+      constexpr int kProbes = 2;
+      for (int dy = -kProbes; dy <= kProbes && is_steep; ++dy)
+        for (int dx = -kProbes; dx <= kProbes && is_steep; ++dx) {
+          const Vec2 q = p + Vec2(dx, dy) * (1.05 * options.spacing / kProbes);
+          const Heightfield::Sample s = heightfield.at(q.x, q.y);
+          is_steep = s.hx * s.hx + s.hy * s.hy >= steep_tangent * steep_tangent;
+          if (heightfield.has_holes()) is_steep = is_steep && heightfield.hole_distance(q.x, q.y) < 0.0;
+        }
+      steep[raster.index(column, row)] = is_steep;
+    }
+    task.advance();
+  }, task);
+
+  const std::vector<Offset> offsets = disc_offsets(options.reach, options.spacing);
+  std::vector<float> recess(count, 0.0f), advance(count, 0.0f), nearby(count, 0.0f);
+  parallel_for(rows, [&](std::size_t r) {
+    const int row = static_cast<int>(r);
+    for (int column = 0; column < raster.width; ++column) {
+      const auto neighbour = [&](const Offset& o) {
+        return raster.index(std::clamp(column + o.dx, 0, raster.width - 1), std::clamp(row + o.dy, 0, raster.height - 1));
+      };
+      const std::size_t here = raster.index(column, row);
+      if (!steep[here]) {
+        nearby[here] = std::ranges::any_of(offsets, [&](const Offset& o) { return steep[neighbour(o)]; }) ? 1.0f : 0.0f;
+        continue;
+      }
+      nearby[here] = 1.0f;
+      double radius = options.reach;  // Grows from the rim of the steep ground inwards.
+      for (const Offset& o : offsets)
+        if (!steep[neighbour(o)]) {
+          radius = std::min(radius, o.distance);
+          break;
+        }
+      float lowest = 0.0f, highest = 0.0f;
+      for (const Offset& o : offsets) {
+        const float weight = static_cast<float>(std::clamp(1.0 + (radius - o.distance) / options.spacing, 0.0, 1.0));
+        if (weight <= 0.0f) break;
+        const float difference = weight * (ground[neighbour(o)] - ground[here]);
+        lowest = std::min(lowest, difference);
+        highest = std::max(highest, difference);
+      }
+      recess[here] = -lowest;
+      advance[here] = highest;
+    }
+    task.advance();
+  }, task);
+  const bool empty = std::ranges::none_of(steep, [](char s) { return s != 0; });
+  return {raster.layer(recess), raster.layer(advance), raster.layer(nearby), empty};
+}
+
+FieldPtr displaced_terrain(FieldPtr terrain, Heightfield layer, double factor) {
+  const Box rectangle = flat_box(layer.lo(), layer.hi());
+  return std::make_shared<DisplacedTerrain>(std::move(terrain), std::move(layer), factor, rectangle);
+}
+
+FieldPtr rock_on_terrain(FieldPtr terrain, RockZone zone, FieldPtr rock, FieldPtr strata, Label ground) {
+  const Box rectangle = flat_box(zone.recess.lo(), zone.recess.hi());
+  return std::make_shared<RockOnTerrain>(std::move(terrain), std::move(zone), std::move(rock), std::move(strata), ground, true,
+                                         rectangle);
+}
+
+}  // namespace outcrop

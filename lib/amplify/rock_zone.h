@@ -1,0 +1,40 @@
+/// Where rock may replace the ground, and how far: the two envelopes of a heightfield.
+#pragma once
+
+#include "outcrop/core/task.h"
+#include "outcrop/implicit/field.h"
+#include "outcrop/terrain/heightfield.h"
+
+namespace outcrop {
+
+struct RockZoneOptions {
+  Vec2 lo{0.0}, hi{0.0};  ///< Rectangle that is covered, map coordinates.
+  double slope = 0.0;     ///< Radians; ground flatter than this is left alone.
+  double reach = 1.0;     ///< Horizontal distance by which the ground may withdraw or advance, metres, > 0.
+  double spacing = 1.0;   ///< Of the raster, metres, > 0.
+};
+
+/// On steep ground the surface may lie anywhere between h − recess and h + advance.
+///
+/// Both envelopes are the lowest and the highest ground within a horizontal radius that grows from 0 at the rim of the
+/// steep ground to `reach`: on a wall they are the wall moved back and forth by that radius, at its top and foot they do
+/// not leave the levels of plateau and floor. Both are exactly 0 over ground that is not steep, and over nodata.
+struct RockZone {
+  Heightfield recess;   ///< ≥ 0, metres, bilinear.
+  Heightfield advance;  ///< ≥ 0, metres, bilinear.
+  Heightfield nearby;   ///< > 0 where steep ground lies within reach.
+  bool empty = true;    ///< No steep ground at all.
+};
+
+/// Cost: O(raster nodes · (reach / spacing)²) on steep ground, O(nodes) elsewhere.
+[[nodiscard]] RockZone make_rock_zone(const Heightfield& heightfield, const RockZoneOptions& options, const Task& task = {});
+
+/// terrain + factor · layer(x, y): the terrain withdrawn (factor > 0) or advanced (< 0).
+[[nodiscard]] FieldPtr displaced_terrain(FieldPtr terrain, Heightfield layer, double factor);
+
+/// max(f − advance, min(f + recess, rock)): rock between the envelopes, the terrain's own bits where both are 0.
+///
+/// Labels: rock's own where rock is the surface, `strata`'s label where the recessed base shows, `ground` elsewhere.
+[[nodiscard]] FieldPtr rock_on_terrain(FieldPtr terrain, RockZone zone, FieldPtr rock, FieldPtr strata, Label ground);
+
+}  // namespace outcrop
