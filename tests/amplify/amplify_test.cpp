@@ -1,0 +1,101 @@
+#include "outcrop/amplify/amplify.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "implicit/field_contract.h"
+#include "outcrop/core/parallel.h"
+#include "outcrop/core/rng.h"
+#include "terraces.h"
+
+namespace outcrop {
+namespace {
+
+StrataFile small_blocks(BlockType type = BlockType::Equidimensional) {
+  StrataFile strata;
+  strata.materials[0].block_type = type;
+  strata.materials[0].tile_side = 8.0;
+  strata.materials[0].sample_spacing = 0.45;
+  return strata;
+}
+
+Amplified amplified(const Heightfield& heightfield, const StrataFile& strata = small_blocks(), double resolution = 0.1) {
+  return amplify(heightfield, strata, {.region_lo = heightfield.lo(), .region_hi = heightfield.hi(), .resolution = resolution});
+}
+
+TEST(Amplify, LeavesGroundBelowTheSlopeThresholdUnchangedToTheBit) {
+  const Heightfield heightfield = test::terraces();
+  const Amplified a = amplified(heightfield);
+  Rng rng(1, "amplify test");
+  int flat = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    const double x = rng.uniform(0.0, 63.0);
+    const double y = rng.uniform(0.0, 63.0);
+    const double dz = rng.uniform(-3.0, 3.0);
+    const Heightfield::Sample s = heightfield.at(x, y);
+    if (std::hypot(s.hx, s.hy) >= std::tan(radians(40.0))) continue;
+    ++flat;
+    ASSERT_EQ(a.field->value({x, y, s.h + dz}), a.terrain->value({x, y, s.h + dz}));
+  }
+  EXPECT_GT(flat, 5000);
+}
+
+TEST(Amplify, GivesMostOfTheSteepSurfaceToBlocksNearTheInputSurface) {
+  for (const BlockType type : {BlockType::Equidimensional, BlockType::Rhombohedral, BlockType::Tabular}) {
+    const Amplified a = amplified(test::terraces(), small_blocks(type));
+    EXPECT_GE(a.rock_coverage, 0.9) << name(type);
+    EXPECT_LT(std::abs(a.mean_offset), 0.25 * a.mean_block_size) << name(type);
+    EXPECT_GT(a.rocks.at(0).replicated_blocks, 50u) << name(type);
+  }
+}
+
+TEST(Amplify, PassesTheFieldContract) {
+  const Amplified a = amplified(test::terraces());
+  test::check_field_contract(*a.field, {Vec3(2.0, 2.0, -2.0), Vec3(61.0, 61.0, 28.0)});
+}
+
+TEST(Amplify, LeavesOutBlocksThatTheResolutionCannotShow) {
+  const Amplified coarse = amplified(test::terraces(), small_blocks(), 3.0);
+  EXPECT_EQ(coarse.rocks.at(0).replicated_blocks, 0u);
+  EXPECT_EQ(coarse.field->value({30.0, 30.0, 12.0}), coarse.terrain->value({30.0, 30.0, 12.0}));
+}
+
+TEST(Amplify, FarFromTheOriginIsTheSameRock) {
+  const Vec2 far(5e6, 5e6);
+  const Amplified here = amplified(test::terraces()), there = amplified(test::terraces(far));
+  Rng rng(2, "amplify test");
+  for (int i = 0; i < 5'000; ++i) {
+    const double x = rng.uniform(1.0, 62.0);
+    const double y = rng.uniform(1.0, 62.0);
+    const double z = rng.uniform(-1.0, 27.0);
+    ASSERT_NEAR(here.field->value({x, y, z}), there.field->value({x + far.x, y + far.y, z}), 1e-4);
+  }
+}
+
+TEST(Amplify, IsTheSameForAnyNumberOfThreads) {
+  const auto run = [](int threads) {
+    const ThreadLimit limit(threads);
+    return amplified(test::terraces());
+  };
+  const Amplified one = run(1), two = run(2);
+  Rng rng(3, "amplify test");
+  for (int i = 0; i < 5'000; ++i) {
+    const double x = rng.uniform(1.0, 62.0);
+    const double y = rng.uniform(1.0, 62.0);
+    const double z = rng.uniform(-1.0, 27.0);
+    ASSERT_EQ(one.field->value({x, y, z}), two.field->value({x, y, z}));
+  }
+}
+
+TEST(SteepestWindow, FindsTheWallAndItsWayDown) {
+  const SteepWindow window = steepest_window(test::terraces(), 20.0, radians(40.0));
+  const Heightfield heightfield = test::terraces();
+  const Heightfield::Sample s = heightfield.at(window.focus.x, window.focus.y);
+  EXPECT_GE(std::hypot(s.hx, s.hy), std::tan(radians(40.0)));
+  EXPECT_LT(window.downhill.x, -0.8);  // The walls fall to the west.
+  EXPECT_GT(window.share, 0.1);
+}
+
+}  // namespace
+}  // namespace outcrop

@@ -1,0 +1,75 @@
+#include "rock_zone.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+
+#include "implicit/field_contract.h"
+#include "outcrop/core/rng.h"
+#include "outcrop/implicit/primitives.h"
+#include "outcrop/terrain/terrain_field.h"
+#include "terraces.h"
+
+namespace outcrop {
+namespace {
+
+const double kSlope = radians(40.0);
+
+RockZone zone_of(const Heightfield& heightfield) {
+  return make_rock_zone(heightfield,
+                        {.lo = heightfield.lo(), .hi = heightfield.hi(), .slope = kSlope, .reach = 3.0, .spacing = 0.5});
+}
+
+TEST(RockZone, IsExactlyNothingOverGroundThatIsNotSteep) {
+  const Heightfield heightfield = test::terraces();
+  const RockZone zone = zone_of(heightfield);
+  ASSERT_FALSE(zone.empty);
+  Rng rng(1, "rock zone test");
+  int steep = 0;
+  for (int i = 0; i < 50'000; ++i) {
+    const double x = rng.uniform(heightfield.lo().x, heightfield.hi().x);
+    const double y = rng.uniform(heightfield.lo().y, heightfield.hi().y);
+    const Heightfield::Sample s = heightfield.at(x, y);
+    const bool open = zone.recess.at(x, y).h != 0.0 || zone.advance.at(x, y).h != 0.0;
+    if (std::hypot(s.hx, s.hy) < std::tan(kSlope))
+      ASSERT_FALSE(open) << x << ' ' << y;
+    else
+      steep += open;
+  }
+  EXPECT_GT(steep, 1000);
+}
+
+TEST(RockZone, StaysBetweenTheLevelsOfPlateauAndFloor) {
+  const Heightfield heightfield = test::terraces();
+  const RockZone zone = zone_of(heightfield);
+  const Interval heights = heightfield.height_bound(heightfield.lo(), heightfield.hi());
+  for (double x = 0.0; x < 63.0; x += 0.37)
+    for (double y = 0.0; y < 63.0; y += 0.41) {
+      const double h = heightfield.at(x, y).h;
+      EXPECT_GE(zone.recess.at(x, y).h, 0.0);
+      EXPECT_GE(zone.advance.at(x, y).h, 0.0);
+      // The envelopes are sampled: between nodes they may miss the level by what the ground does within a node's width.
+      EXPECT_GE(h - zone.recess.at(x, y).h, heights.lo - 1.5);
+      EXPECT_LE(h + zone.advance.at(x, y).h, heights.hi + 1.5);
+    }
+}
+
+TEST(RockZone, WithoutSteepGroundIsEmpty) {
+  ElevationGrid grid{.width = 8, .height = 8};
+  for (int i = 0; i < 64; ++i) grid.elevations.push_back(0.2f * static_cast<float>(i % 8));
+  EXPECT_TRUE(zone_of(Heightfield(grid)).empty);
+}
+
+TEST(RockOnTerrain, PassesTheFieldContract) {
+  const Heightfield heightfield = test::terraces();
+  const auto terrain = std::make_shared<TerrainField>(heightfield);
+  const FieldPtr rock = sphere({30.0, 30.0, 10.0}, 9.0);
+  const FieldPtr field = rock_on_terrain(terrain, zone_of(heightfield), rock, terrain, 1);
+  test::check_field_contract(*field, {Vec3(1.0, 1.0, -5.0), Vec3(62.0, 62.0, 30.0)});
+  test::check_field_contract(*displaced_terrain(terrain, zone_of(heightfield).recess, 0.7),
+                             {Vec3(1.0, 1.0, -5.0), Vec3(62.0, 62.0, 30.0)});
+}
+
+}  // namespace
+}  // namespace outcrop
