@@ -1,0 +1,62 @@
+/// What both programs do with their outputs: check them before long work, write them after it.
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "outcrop/amplify/report.h"
+#include "outcrop/mesh/triangle_mesh.h"
+#include "outcrop/mesh/write_mesh.h"
+
+namespace outcrop {
+
+/// Where a run wants to write.
+struct Outputs {
+  std::vector<std::filesystem::path> meshes;    ///< .ply, .obj, .stl, .vdb
+  std::vector<std::filesystem::path> previews;  ///< .png, .exr
+  std::filesystem::path report;                 ///< Any name; may be empty.
+
+  [[nodiscard]] std::vector<std::filesystem::path> all() const;
+};
+
+/// @throws ParameterError for an unknown extension, a folder that cannot be written to, a file named twice or an input.
+void check_outputs(const Outputs& outputs, const std::vector<std::filesystem::path>& inputs);
+
+[[nodiscard]] bool is_vdb(const std::filesystem::path& path);
+/// Whether any of the outputs needs triangles.
+[[nodiscard]] bool wants_triangles(const Outputs& outputs);
+
+/// The same mesh with positions relative to `origin`: what its file holds.
+[[nodiscard]] TriangleMesh rebased(TriangleMesh mesh, const Vec3& origin);
+
+/// Writes .png (beauty) or .exr (all layers).
+void write_preview(const std::filesystem::path& path, const Preview& preview);
+
+/// Half of the machine's memory, or `gib` when that is > 0; bytes. @throws ParameterError for anything else.
+[[nodiscard]] std::size_t memory_limit_bytes(double gib);
+
+/// "1.5 GiB", "340 kB"-like, in powers of 1000 with three digits.
+[[nodiscard]] std::string byte_text(double bytes);
+/// A number with at most `digits` significant digits.
+[[nodiscard]] std::string number_text(double value, int digits = 4);
+/// "1 234 567"
+[[nodiscard]] std::string count_text(double value);
+
+/// Wall-clock seconds since it was made or last asked.
+class Stopwatch {
+ public:
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    const std::chrono::duration<double> passed = now - last_;
+    last_ = now;
+    return passed.count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace outcrop

@@ -1,0 +1,291 @@
+#include "outcrop/amplify/run_amplify.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "outcrop/amplify/report.h"
+#include "outcrop/core/file.h"
+#include "outcrop/core/parallel.h"
+#include "outcrop/implicit/grid_field.h"
+#include "outcrop/render/camera.h"
+#include "outputs.h"
+
+namespace outcrop {
+namespace {
+
+constexpr double kFocusBlocks = 16.0;         // Across the part that the default camera frames: each block is seen.
+constexpr double kFocusHeight = 0.8;          // Of the focus's width.
+constexpr double kCameraTurn = radians(25);   // Off the fall line: walls seen at an angle show their depth.
+constexpr double kCameraRise = 0.35;          // Height over distance of the default camera.
+constexpr int kFocusSamples = 192;            // Across the region, to find its steepest part.
+constexpr double kLeastBytesACell = 60.0;     // Two triangles and their share of vertices: below what meshing takes.
+
+// What one core does, measured on the canyon of the demo; for --dry-run only.
+constexpr double kTrianglesASecond = 350e3;
+constexpr double kPreviewPixelsASecond = 40e3;
+
+/// A sensible line for files: what was made from what, without paths or thread counts, so that runs compare to the byte.
+std::vector<std::string> comments(const AmplifyReport& report, const Vec2& origin) {
+  const AmplifyOptions& options = report.options;
+  return {"outcrop " + std::string(version()) + " amplify " + report.heightmap.filename().string(),
+          "strata " + (report.strata.empty() ? "default" : report.strata.filename().string()),
+          "seed " + std::to_string(options.seed) + ", resolution " + number_text(options.resolution, 9) + " m",
+          "origin " + number_text(origin.x, 15) + " " + number_text(origin.y, 15)};
+}
+
+Heightfield make_heightfield(const AmplifyRun& run, HeightfieldFile file) {
+  try {
+    return Heightfield(std::move(file.grid), run.interpolation);
+  } catch (const ParameterError& error) {
+    throw InputError(run.heightmap.string() + ": " + error.what());
+  }
+}
+
+/// The region's own heights as a heightfield, so that its steepest part is sought inside it.
+Heightfield resampled(const Heightfield& heightfield, const Vec2& lo, const Vec2& hi) {
+  ElevationGrid grid;
+  const Vec2 extent = hi - lo;
+  const double cell = std::max(extent.x, extent.y) / (kFocusSamples - 1);
+  grid.width = std::max(2, static_cast<int>(std::floor(extent.x / cell + 1e-6)) + 1);
+  grid.height = std::max(2, static_cast<int>(std::floor(extent.y / cell + 1e-6)) + 1);
+  grid.cell_x = extent.x / (grid.width - 1);
+  grid.cell_y = extent.y / (grid.height - 1);
+  grid.origin = lo;
+  grid.elevations.reserve(static_cast<std::size_t>(grid.width) * grid.height);
+  for (int row = 0; row < grid.height; ++row)
+    for (int column = 0; column < grid.width; ++column)
+      grid.elevations.push_back(static_cast<float>(
+          heightfield.at(lo.x + column * grid.cell_x, lo.y + (grid.height - 1 - row) * grid.cell_y).h));
+  return Heightfield(std::move(grid));
+}
+
+PreviewOptions preview_options(const AmplifyRun& run, const AmplifyReport& report) {
+  const Amplified& amplified = report.amplified;
+  PreviewOptions options;
+  options.width = run.width;
+  options.height = run.height;
+  options.region = amplified.region;
+  options.detail = report.options.resolution;
+  options.colours = amplified.label_colours;
+  options.seed = run.seed;
+  const double fov = radians(run.fov_deg);
+  if (run.camera) {
+    const std::array<double, 6>& c = *run.camera;
+    const Vec3 corner(report.heightfield->lo(), 0.0);
+    options.camera = {corner + Vec3(c[0], c[1], c[2]), corner + Vec3(c[3], c[4], c[5]), fov};
+  } else {
+    const Vec2 lo = report.options.region_lo, hi = report.options.region_hi;
+    const double size = std::min({kFocusBlocks * amplified.mean_block_size, hi.x - lo.x, hi.y - lo.y});
+    const SteepWindow steep = steepest_window(resampled(*report.heightfield, lo, hi), size, report.rock.placement.slope);
+    const double c = std::cos(kCameraTurn), s = std::sin(kCameraTurn);
+    const Vec2 d = steep.downhill;
+    const Vec3 from(c * d.x - s * d.y, s * d.x + c * d.y, kCameraRise);
+    const Vec3 half(0.5 * size, 0.5 * size, 0.5 * kFocusHeight * size);
+    options.camera = framed(*amplified.field, {steep.focus - half, steep.focus + half}, from, fov,
+                            double(run.width) / run.height);
+  }
+  // The sun stands to the upper left of the camera, a little behind it: light rakes over the rock.
+  const CameraAxes axes = camera_axes(options.camera);
+  const Vec3 ahead = glm::cross(Vec3(0, 0, 1), axes.right);
+  options.sun = glm::normalize(-0.8 * axes.right - 0.45 * ahead + Vec3(0, 0, 0.75));
+  return options;
+}
+
+std::size_t block_count(const Amplified& amplified) {
+  std::size_t blocks = 0;
+  for (const RockReport& rock : amplified.rocks) blocks += rock.replicated_blocks;
+  return blocks;
+}
+
+/// Bytes that a mesh file of so many triangles takes; a closed surface has half as many vertices.
+double file_bytes(const std::filesystem::path& path, double triangles) {
+  const std::string extension = path.extension().string();
+  if (extension == ".stl") return 84.0 + 50.0 * triangles;
+  if (extension == ".obj") return 75.0 * triangles;
+  if (extension == ".vdb") return 30.0 * triangles;
+  return 26.0 * triangles;  // PLY: 13 a face, 26 a vertex.
+}
+
+std::string dry_run_text(const AmplifyRun& run, const AmplifyReport& report, const PolygonizeEstimate& estimate) {
+  const Amplified& amplified = report.amplified;
+  const AmplifyOptions& options = report.options;
+  const double triangles = static_cast<double>(estimate.triangles);
+  const double mesh_seconds = run.meshes.empty() ? 0.0 : triangles / kTrianglesASecond;
+  const double pixels = run.previews.empty() ? 0.0 : double(run.width) * run.height;
+  const double seconds = (mesh_seconds + pixels / kPreviewPixelsASecond) / report.threads + report.seconds.reading +
+                         amplified.tile_seconds + amplified.placement_seconds;
+  const Vec2 extent = options.region_hi - options.region_lo;
+  std::string text = "region     " + number_text(extent.x) + " m x " + number_text(extent.y) + " m at " +
+                     number_text(options.resolution) + " m\n";
+  text += "blocks     " + count_text(double(block_count(amplified))) + "\n";
+  text += "cells      " + count_text(double(estimate.cells)) + "\n";
+  text += "triangles  " + count_text(triangles) + "\n";
+  text += "seconds    " + number_text(std::ceil(seconds), 6) + " on " + std::to_string(report.threads) + " threads\n";
+  text += "memory     " + byte_text(double(estimate.bytes)) + ", limit " + byte_text(double(report.memory_limit)) + "\n";
+  for (const auto& path : run.meshes) text += path.string() + "  " + byte_text(file_bytes(path, triangles)) + "\n";
+  for (const auto& path : run.previews)
+    text += path.string() + "  " + byte_text(pixels * (path.extension() == ".png" ? 1.8 : 28.0)) + "\n";
+  return text;
+}
+
+/// One run, stage by stage.
+class Runner {
+ public:
+  Runner(AmplifyRun run, const Notify& notify, const Task& task) : run_(std::move(run)), notify_(notify), task_(task) {}
+
+  std::string operator()() {
+    prepare();
+    read();
+    compose();
+    if (run_.dry_run) return dry_run_text(run_, report_, estimate_polygonize(*amplified().field, mesh_options(), task_));
+    if (!run_.meshes.empty()) mesh();
+    if (!run_.previews.empty()) preview();
+    if (!run_.report.empty()) write_report();
+    return {};
+  }
+
+ private:
+  [[nodiscard]] const Amplified& amplified() const { return report_.amplified; }
+
+  void say(const std::string& line) const {
+    if (notify_) notify_(line);
+  }
+  void note(const std::string& line) {
+    report_.notes.push_back(line);
+    say(line);
+  }
+
+  /// Everything that can be refused before any work.
+  void prepare() {
+    if (!run_.dry_run && run_.meshes.empty() && run_.previews.empty() && run_.report.empty()) {
+      const std::string stem = run_.heightmap.stem().string() + "_rock";
+      run_.meshes = {stem + ".ply"};
+      run_.previews = {stem + ".png"};
+      say("writing " + stem + ".ply and " + stem + ".png; -o, --preview or --report choose otherwise");
+    }
+    require(run_.width >= 16 && run_.width <= 16384 && run_.height >= 16 && run_.height <= 16384, "--size",
+            "16 to 16384 pixels each", std::to_string(run_.width) + " " + std::to_string(run_.height));
+    require(run_.fov_deg >= 1.0 && run_.fov_deg <= 150.0, "--fov-deg", "1 to 150 degrees", run_.fov_deg);
+    report_.memory_limit = memory_limit_bytes(run_.memory_limit_gib);
+    check_outputs({run_.meshes, run_.previews, run_.report}, {run_.heightmap, run_.strata});
+    report_.command = run_.command;
+    report_.heightmap = run_.heightmap;
+    report_.strata = run_.strata;
+    report_.interpolation = run_.interpolation;
+    report_.solid = run_.solid;
+    report_.threads = thread_count();
+  }
+
+  void read() {
+    task_.begin("reading");
+    if (!run_.strata.empty()) report_.rock = read_strata(run_.strata);
+    if (run_.nodata) report_.rock.nodata = *run_.nodata;
+    HeightfieldFile file = read_heightfield(run_.heightmap, run_.heights);
+    for (const std::string& line : file.notes) note(run_.heightmap.string() + ": " + line);
+    report_.heightfield = make_heightfield(run_, std::move(file));
+    report_.seconds.reading = watch_.lap();
+    task_.check();
+  }
+
+  void compose() {
+    const Window window = choose_window(*report_.heightfield, report_.rock, run_);
+    if (!window.note.empty()) note(window.note);
+    report_.options = {window.lo, window.hi, window.resolution, run_.seed};
+    check_memory(window);
+    report_.amplified = amplify(*report_.heightfield, report_.rock, report_.options, task_);
+    report_.seconds.tiles = amplified().tile_seconds;
+    report_.seconds.placement = amplified().placement_seconds;
+    if (block_count(amplified()) == 0)
+      note("no ground here is steeper than " + number_text(degrees(report_.rock.placement.slope)) +
+           " degrees, or blocks are below the resolution: the terrain stays as it is");
+    watch_.lap();
+  }
+
+  /// A flat sheet over the region needs this much at least: refuses the hopeless before blocks are placed for hours.
+  void check_memory(const Window& window) const {
+    const Vec2 extent = window.hi - window.lo;
+    const double cells = extent.x * extent.y / (window.resolution * window.resolution);
+    const double limit = static_cast<double>(report_.memory_limit);
+    if (run_.meshes.empty() || cells * kLeastBytesACell <= limit) return;
+    const double fits = std::sqrt(extent.x * extent.y * kLeastBytesACell / limit);
+    require(false, "--resolution", "above " + number_text(fits, 3) + " m for a memory limit of " + byte_text(limit),
+            window.resolution);
+  }
+
+  [[nodiscard]] PolygonizeOptions mesh_options() const {
+    return {.region = amplified().region,
+            .resolution = report_.options.resolution,
+            .border = run_.solid ? Border::Closed : Border::Open,
+            .parts = Parts::Grounded,
+            .memory_limit = report_.memory_limit};
+  }
+
+  void mesh() {
+    const Vec3 origin(report_.heightfield->lo(), 0.0);
+    if (wants_triangles({run_.meshes, {}, {}})) {
+      PolygonizeResult made = polygonize(*amplified().field, mesh_options(), task_);
+      report_.polygonized = made.statistics;
+      report_.seconds.meshing = watch_.lap();
+      const TriangleMesh mesh = rebased(std::move(made.mesh), origin);
+      const MeshMetadata metadata{comments(report_, report_.heightfield->lo()), amplified().label_names,
+                                  amplified().label_colours};
+      task_.begin("writing", run_.meshes.size());
+      for (const auto& path : run_.meshes) {
+        if (is_vdb(path)) continue;
+        write_mesh(path, mesh, metadata, task_);
+        written(path, count_text(double(mesh.triangles.size())) + " triangles");
+      }
+      if (!run_.report.empty()) report_.mesh = check_mesh(mesh);
+    }
+    for (const auto& path : run_.meshes) {
+      if (!is_vdb(path)) continue;
+      write_vdb(path, *amplified().field, amplified().region, report_.options.resolution, origin, kVdbBand, task_);
+      written(path, "a level set");
+    }
+    report_.seconds.writing = watch_.lap();
+  }
+
+  void preview() {
+    const Preview picture = render_preview(*amplified().field, preview_options(run_, report_), task_);
+    report_.preview = picture.statistics;
+    for (const auto& path : run_.previews) {
+      write_preview(path, picture);
+      written(path, std::to_string(run_.width) + " x " + std::to_string(run_.height) + " pixels");
+    }
+    report_.seconds.preview = watch_.lap();
+  }
+
+  void write_report() {
+    report_.outputs.push_back(run_.report);
+    report_.seconds.total = total_.lap();
+    OutputFile file(run_.report);
+    file.write(report_json(report_));
+    file.commit();
+    say("wrote " + run_.report.string());
+  }
+
+  void written(const std::filesystem::path& path, const std::string& what) {
+    report_.outputs.push_back(path);
+    say("wrote " + path.string() + ": " + what);
+    task_.check();
+  }
+
+  static constexpr double kVdbBand = 3.0;  // Voxels on either side of the surface.
+
+  AmplifyRun run_;
+  const Notify& notify_;
+  const Task& task_;
+  AmplifyReport report_;
+  Stopwatch watch_, total_;
+};
+
+}  // namespace
+
+std::string run_amplify(AmplifyRun run, const Notify& notify, const Task& task) {
+  require(run.threads >= 0, "--threads", "0 (all cores) or more", run.threads);
+  const ThreadLimit limit(run.threads);
+  return Runner(std::move(run), notify, task)();
+}
+
+}  // namespace outcrop

@@ -1,0 +1,123 @@
+#include "outcrop/amplify/run_polygonize.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <utility>
+
+#include "outcrop/amplify/report.h"
+#include "outcrop/amplify/scene_file.h"
+#include "outcrop/core/parallel.h"
+#include "outcrop/implicit/grid_field.h"
+#include "outcrop/render/camera.h"
+#include "outputs.h"
+
+namespace outcrop {
+namespace {
+
+constexpr double kVdbBand = 3.0;               // Voxels on either side of the surface.
+constexpr double kFieldOfView = radians(35.0);
+const Vec3 kViewFrom(0.9, -1.2, 0.8);          // A corner view from above.
+const Vec3 kSun(-0.45, -0.6, 0.8);
+
+/// The scene that the input is: a lone grid or mesh counts as a scene of one field.
+Scene read_input(const PolygonizeRun& run, const Task& task) {
+  std::string extension = run.input.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (extension == ".json") return read_scene(run.input, task);
+  Scene scene;
+  if (extension == ".vdb") {
+    scene.field = read_vdb(run.input, task);
+  } else if (extension == ".ply" || extension == ".obj" || extension == ".stl") {
+    scene.field = mesh_field(run.input, run.resolution.value_or(0.0), task);
+  } else {
+    const std::string got = extension.empty() ? "a name without extension" : extension;
+    throw InputError(run.input.string() + ": expected a scene (.json), a grid (.vdb) or a mesh (.ply, .obj, .stl), got " + got);
+  }
+  scene.region = default_region(*scene.field);
+  scene.label_names = {"rock"};
+  scene.label_colours = {Vec3f(0.42f, 0.37f, 0.31f)};
+  return scene;
+}
+
+PolygonizeOptions mesh_options(const PolygonizeRun& run, const Scene& scene) {
+  const std::optional<Box> region = run.region ? run.region : scene.region;
+  if (!region)
+    throw InputError(run.input.string() + ": expected a field of known extent, or \"region\" in the scene, or --region");
+  for (int axis = 0; axis < 3; ++axis)
+    require(region->lo[axis] < region->hi[axis], "--region", "X0 Y0 Z0 below X1 Y1 Z1",
+            number_text(region->lo[axis]) + " " + number_text(region->hi[axis]));
+  const Vec3 size = region->size();
+  const double longest = std::max({size.x, size.y, size.z});
+  const double resolution = run.resolution ? *run.resolution : scene.resolution.value_or(longest / kDefaultCells);
+  require(resolution > 0.0 && resolution <= longest, "--resolution",
+          "metres above 0 and at most " + number_text(longest) + ", the region's longest side", resolution);
+  return {.region = *region,
+          .resolution = resolution,
+          .border = run.border,
+          .parts = run.parts,
+          .keep_voids = run.keep_voids,
+          .memory_limit = memory_limit_bytes(run.memory_limit_gib)};
+}
+
+Preview preview(const PolygonizeRun& run, const Scene& scene, const PolygonizeOptions& mesh, const Task& task) {
+  PreviewOptions options;
+  options.width = run.width;
+  options.height = run.height;
+  options.region = mesh.region;
+  options.detail = mesh.resolution;
+  options.colours = scene.label_colours;
+  options.camera = frame_box(mesh.region, -kViewFrom, kFieldOfView, double(run.width) / run.height);
+  options.sun = kSun;
+  return render_preview(*scene.field, options, task);
+}
+
+}  // namespace
+
+std::string run_polygonize(const PolygonizeRun& run, const Notify& notify, const Task& task) {
+  require(run.threads >= 0, "--threads", "0 (all cores) or more", run.threads);
+  require(run.dry_run || !run.meshes.empty() || !run.previews.empty(), "--output", "at least one mesh or --preview", "none");
+  check_outputs({run.meshes, run.previews, {}}, {run.input});
+  const ThreadLimit limit(run.threads);
+  const auto written = [&](const std::filesystem::path& path, const std::string& what) {
+    if (notify) notify("wrote " + path.string() + ": " + what);
+  };
+
+  task.begin("reading");
+  const Scene scene = read_input(run, task);
+  const PolygonizeOptions options = mesh_options(run, scene);
+  if (run.dry_run) {
+    const PolygonizeEstimate estimate = estimate_polygonize(*scene.field, options, task);
+    return "resolution " + number_text(options.resolution) + " m\ncells      " + count_text(double(estimate.cells)) +
+           "\ntriangles  " + count_text(double(estimate.triangles)) + "\nmemory     " + byte_text(double(estimate.bytes)) +
+           "\n";
+  }
+  if (wants_triangles({run.meshes, {}, {}})) {
+    const TriangleMesh mesh = rebased(polygonize(*scene.field, options, task).mesh, Vec3(0.0));
+    if (mesh.triangles.empty() && notify) notify("the region holds no surface: the mesh is empty");
+    const MeshMetadata metadata{{"outcrop " + std::string(version()) + " polygonize " + run.input.filename().string(),
+                                 "resolution " + number_text(options.resolution, 9) + " m"},
+                                scene.label_names,
+                                scene.label_colours};
+    for (const auto& path : run.meshes) {
+      if (is_vdb(path)) continue;
+      write_mesh(path, mesh, metadata, task);
+      written(path, count_text(double(mesh.triangles.size())) + " triangles");
+    }
+  }
+  for (const auto& path : run.meshes) {
+    if (!is_vdb(path)) continue;
+    write_vdb(path, *scene.field, options.region, options.resolution, Vec3(0.0), kVdbBand, task);
+    written(path, "a level set");
+  }
+  if (!run.previews.empty()) {
+    const Preview picture = preview(run, scene, options, task);
+    for (const auto& path : run.previews) {
+      write_preview(path, picture);
+      written(path, std::to_string(run.width) + " x " + std::to_string(run.height) + " pixels");
+    }
+  }
+  return {};
+}
+
+}  // namespace outcrop
