@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
+#include "clip_mesh.h"
 #include "outcrop/amplify/report.h"
 #include "outcrop/core/file.h"
 #include "outcrop/core/parallel.h"
@@ -53,11 +55,16 @@ Heightfield resampled(const Heightfield& heightfield, const Vec2& lo, const Vec2
   grid.cell_y = extent.y / (grid.height - 1);
   grid.origin = lo;
   grid.elevations.reserve(static_cast<std::size_t>(grid.width) * grid.height);
+  bool any = false;
   for (int row = 0; row < grid.height; ++row)
-    for (int column = 0; column < grid.width; ++column)
-      grid.elevations.push_back(static_cast<float>(
-          heightfield.at(lo.x + column * grid.cell_x, lo.y + (grid.height - 1 - row) * grid.cell_y).h));
-  return Heightfield(std::move(grid));
+    for (int column = 0; column < grid.width; ++column) {
+      const Vec2 p = lo + Vec2(column * grid.cell_x, (grid.height - 1 - row) * grid.cell_y);
+      const bool missing = heightfield.has_holes() && heightfield.hole_distance(p.x, p.y) > 0.0;
+      any = any || !missing;
+      grid.elevations.push_back(missing ? std::numeric_limits<float>::quiet_NaN()
+                                        : static_cast<float>(heightfield.at(p.x, p.y).h));
+    }
+  return any ? Heightfield(std::move(grid)) : heightfield;
 }
 
 PreviewOptions preview_options(const AmplifyRun& run, const AmplifyReport& report) {
@@ -224,7 +231,10 @@ class Runner {
   void mesh() {
     const Vec3 origin(report_.heightfield->lo(), 0.0);
     if (wants_triangles({run_.meshes, {}, {}})) {
-      PolygonizeResult made = polygonize(*amplified().field, mesh_options(), task_);
+      // A sheet has no walls: it is cut where data are missing. A solid gets walls there, as at the region's border.
+      const bool cut = amplified().hole && !run_.solid;
+      PolygonizeResult made = polygonize(cut ? *amplified().ground : *amplified().field, mesh_options(), task_);
+      if (cut) made.mesh = clip_mesh(made.mesh, *amplified().hole);
       report_.polygonized = made.statistics;
       report_.seconds.meshing = watch_.lap();
       const TriangleMesh mesh = rebased(std::move(made.mesh), origin);
