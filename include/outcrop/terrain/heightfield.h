@@ -57,6 +57,8 @@ class Heightfield {
   [[nodiscard]] bool has_holes() const noexcept;
   /// Signed horizontal distance (not exact, Lipschitz 1) to the nodata area: > 0 in holes, < 0 on data; C⁰, bilinear.
   [[nodiscard]] double hole_distance(double x, double y) const noexcept;
+  /// The same with its gradient; `h` is the distance.
+  [[nodiscard]] Sample hole_at(double x, double y) const noexcept;
   [[nodiscard]] Interval hole_bound(const Vec2& lo, const Vec2& hi) const noexcept;
 
  private:

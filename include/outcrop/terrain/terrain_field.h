@@ -21,7 +21,7 @@ class TerrainField final : public Field {
 
  private:
   Heightfield heightfield_;
-  NodataPolicy nodata_;
+  bool holes_;  ///< The hole distance may matter here.
   double lipschitz_;
 };
 
