@@ -1,0 +1,204 @@
+#include "outcrop/amplify/strata_file.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+
+#include "core/scratch.h"
+#include "outcrop/core/data_path.h"
+#include "outcrop/core/error.h"
+#include "outcrop/core/json.h"
+
+namespace outcrop {
+namespace {
+
+class StrataFileTest : public testing::Test {
+ protected:
+  std::filesystem::path write(const std::string& text) {
+    const std::filesystem::path path = folder_ / "strata.json";
+    std::ofstream(path) << text;
+    return path;
+  }
+  StrataFile read(const std::string& text) { return read_strata(write(text)); }
+  std::string error_of(const std::string& text) {
+    const std::filesystem::path path = write(text);
+    return test::message_of<InputError>([&] { (void)read_strata(path); });
+  }
+
+  test::Scratch folder_;
+};
+
+TEST_F(StrataFileTest, AnEmptyObjectMeansTheDefaults) {
+  const StrataFile file = read("{}");
+  ASSERT_EQ(file.materials.size(), 1u);
+  EXPECT_EQ(file.materials[0].block_type, BlockType::Equidimensional);
+  EXPECT_FALSE(file.materials[0].joints);
+  EXPECT_TRUE(file.strata.layers.empty());
+  EXPECT_EQ(file.placement.slope, Placement{}.slope);
+  EXPECT_EQ(file.nodata, NodataPolicy::Hole);
+}
+
+TEST_F(StrataFileTest, EveryKeyArrives) {
+  std::ofstream(folder_ / "own.png") << "not read here";
+  const StrataFile file = read(R"({
+    "$schema": "x", "version": 1, "description": "y",
+    "materials": [
+      {"name": "lower", "block_type": "tabular", "tile_side": 10, "sample_spacing": 0.5, "aperture": 0.03, "rounding": 0.2,
+       "min_block_samples": 7,
+       "joint_sets": [{"dip_deg": 90, "dip_direction_deg": 90, "kappa": 50, "share": 2, "radius": [1, 4]}],
+       "discs": 21, "irregular_share": 0.25, "centre_spacing": 1.5, "column_width": 2,
+       "relief": {"image": "own.png", "period": 2.5, "amplitude": 0.1}, "colour": [0.1, 0.2, 0.3]},
+      {"name": "upper", "block_type": "columnar"}],
+    "strata": {"layers": [{"material": "upper", "top": 0.25}, {"material": "lower", "top": 0.5}, {"material": "upper"}],
+               "tops": "relative", "dip_deg": 12, "dip_direction_deg": 200, "undulation": 3, "undulation_wavelength": 70,
+               "reference": [4, 5]},
+    "placement": {"slope_deg": 50, "recess": 1.5, "distance": [-3, 0.5], "crack_depth": 0.4, "lattice_azimuth_deg": -10},
+    "ground_colour": [0.4, 0.5, 0.6], "nodata": "fill"})");
+  ASSERT_EQ(file.materials.size(), 2u);
+  const RockMaterial& lower = file.materials[0];
+  EXPECT_EQ(lower.name, "lower");
+  EXPECT_EQ(lower.block_type, BlockType::Tabular);
+  EXPECT_EQ(lower.tile_side, 10.0);
+  EXPECT_EQ(lower.sample_spacing, 0.5);
+  EXPECT_EQ(lower.aperture, 0.03);
+  EXPECT_EQ(lower.rounding, 0.2);
+  EXPECT_EQ(lower.min_block_samples, 7);
+  EXPECT_EQ(lower.relief, folder_ / "own.png");
+  EXPECT_EQ(lower.relief_period, 2.5);
+  EXPECT_EQ(lower.relief_amplitude, 0.1);
+  EXPECT_EQ(lower.colour, Vec3f(0.1f, 0.2f, 0.3f));
+  ASSERT_TRUE(lower.joints);
+  EXPECT_EQ(lower.joints->discs, 21);
+  EXPECT_EQ(lower.joints->irregular_share, 0.25);
+  EXPECT_EQ(lower.joints->centre_spacing, 3.0) << "patterns are for 20 m: metres of a 10 m tile count double";
+  EXPECT_EQ(lower.joints->column_width, 4.0);
+  ASSERT_EQ(lower.joints->sets.size(), 1u);
+  EXPECT_EQ(lower.joints->sets[0].kappa, 50.0);
+  EXPECT_EQ(lower.joints->sets[0].share, 2.0);
+  EXPECT_EQ(lower.joints->sets[0].radius_lo, 2.0);
+  EXPECT_EQ(lower.joints->sets[0].radius_hi, 8.0);
+  EXPECT_EQ(file.materials[1].block_type, BlockType::Columnar);
+  ASSERT_EQ(file.strata.layers.size(), 3u);
+  EXPECT_EQ(file.strata.layers[0].material, 1);
+  EXPECT_EQ(file.strata.layers[1].material, 0);
+  EXPECT_EQ(file.strata.layers[1].top, 0.5);
+  EXPECT_EQ(file.strata.layers[2].top, std::numeric_limits<double>::infinity());
+  EXPECT_TRUE(file.relative_tops);
+  EXPECT_DOUBLE_EQ(file.strata.dip, radians(12));
+  EXPECT_DOUBLE_EQ(file.strata.dip_direction, radians(200));
+  EXPECT_EQ(file.strata.undulation, 3.0);
+  EXPECT_EQ(file.strata.undulation_wavelength, 70.0);
+  EXPECT_EQ(file.strata.reference, Vec2(4, 5));
+  EXPECT_DOUBLE_EQ(file.placement.slope, radians(50));
+  EXPECT_EQ(file.placement.recess, 1.5);
+  EXPECT_EQ(file.placement.distance_lo, -3.0);
+  EXPECT_EQ(file.placement.distance_hi, 0.5);
+  EXPECT_EQ(file.placement.crack_depth, 0.4);
+  EXPECT_DOUBLE_EQ(file.placement.lattice_azimuth, radians(-10));
+  EXPECT_EQ(file.ground_colour, Vec3f(0.4f, 0.5f, 0.6f));
+  EXPECT_EQ(file.nodata, NodataPolicy::Fill);
+}
+
+TEST_F(StrataFileTest, JointsFallTowardsTheirDipDirection) {
+  const auto normal = [&](const char* angles) {
+    return read(std::string(R"({"materials": [{"tile_side": 10, "joint_sets": [{)") + angles + "}]}]}").materials[0].joints->sets[0].normal;
+  };
+  EXPECT_LT(glm::length(normal(R"("dip_deg": 0)") - Vec3(0, 0, 1)), 1e-12);
+  EXPECT_LT(glm::length(normal(R"("dip_deg": 90, "dip_direction_deg": 90)") - Vec3(1, 0, 0)), 1e-12) << "east";
+  const Vec3 north30 = normal(R"("dip_deg": 30, "dip_direction_deg": 0)");
+  // Down the dip is horizontal north and down by tan 30°: at right angles to the normal.
+  EXPECT_NEAR(glm::dot(north30, Vec3(0, std::cos(radians(30)), -std::sin(radians(30)))), 0.0, 1e-12);
+}
+
+TEST_F(StrataFileTest, JointLengthsInMetresFixTheTileAtTwentyMetres) {
+  EXPECT_EQ(read(R"({"materials": [{"centre_spacing": 3}]})").materials[0].tile_side, 20.0);
+  EXPECT_EQ(read(R"({"materials": [{"discs": 30}]})").materials[0].tile_side, 0.0) << "counts scale along";
+}
+
+TEST_F(StrataFileTest, ReliefPeriodsDivideTheTile) {
+  for (const double period : {0.3, 2.9, 3.0, 7.0, 100.0}) {
+    RockMaterial material;
+    material.relief_period = period;
+    const double repeats = 20.0 / rock_relief(material, 20.0).period;
+    EXPECT_NEAR(repeats, std::round(repeats), 1e-12);
+    EXPECT_GE(repeats, 1.0);
+  }
+}
+
+TEST_F(StrataFileTest, ShippedExamplesAreValid) {
+  std::size_t count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(data_path() / "strata")) {
+    EXPECT_NO_THROW((void)read_strata(entry.path())) << entry.path();
+    ++count;
+  }
+  EXPECT_GE(count, 3u);
+}
+
+/// Every key of the schema, with null for a value: the reader must know it and object to the null alone.
+TEST_F(StrataFileTest, TheReaderKnowsEveryKeyOfTheSchema) {
+  const Json schema = read_json(data_path() / "schemas" / "strata.schema.json");
+  const auto member = [](const Json& json, const std::string& key) -> const Json& {
+    for (const auto& [name, value] : json.members)
+      if (name == key) return value;
+    ADD_FAILURE() << "the schema has no " << key;
+    return json;
+  };
+  const auto expect_known = [&](const Json& object, const std::string& before, const std::string& after) {
+    for (const auto& [key, unused] : member(object, "properties").members) {
+      const std::string error = error_of(before + "\"" + key + "\": null" + after);
+      EXPECT_NE(error, "") << key << " is null";
+      EXPECT_EQ(error.find("did you mean"), std::string::npos) << error;
+      EXPECT_EQ(error.find("unknown"), std::string::npos) << error;
+    }
+  };
+  const Json& kinds = member(schema, "$defs");
+  const Json& material = member(kinds, "material");
+  expect_known(schema, "{", "}");
+  expect_known(material, R"({"materials": [{)", "}]}");
+  expect_known(member(member(material, "properties"), "relief"), R"({"materials": [{"relief": {)", "}}]}");
+  expect_known(member(kinds, "joint_set"), R"({"materials": [{"joint_sets": [{)", "}]}]}");
+  expect_known(member(kinds, "strata"), R"({"strata": {)", "}}");
+  expect_known(member(kinds, "placement"), R"({"placement": {)", "}}");
+}
+
+TEST_F(StrataFileTest, MistakesAreNamedWithTheirPlace) {
+  struct Mistake {
+    const char* text;
+    std::vector<std::string> says;
+  };
+  const Mistake mistakes[] = {
+      {"{\n  \"plasement\": {}}", {":2:3:", "plasement", "placement"}},
+      {"{\"placement\": {\"slop_deg\": 3}}", {":1:16:", "slop_deg", "slope_deg"}},
+      {"{\"placement\": {\"slope_deg\": 120}}", {"slope_deg", "89", "120"}},
+      {"{\"placement\": {\"distance\": [1, -1]}}", {"distance", "lower"}},
+      {"{\"placement\": 3}", {"object", "3"}},
+      {"{\"version\": 2}", {"version", "1", "2"}},
+      {"[]", {":1:1:", "object", "array"}},
+      {"{\"materials\": []}", {"materials", "at least one"}},
+      {"{\"materials\": [{\"block_type\": \"tabula\"}]}", {"block_type", "tabular"}},
+      {"{\"materials\": [{\"tile_side\": -1}]}", {"tile_side", "-1"}},
+      {"{\"materials\": [{\"tile_side\": 10, \"sample_spacing\": 0.001}]}", {"sample_spacing", "0.1", "0.001"}},
+      {"{\"materials\": [{\"joint_sets\": [{\"radius\": [4, 1]}]}]}", {"radius"}},
+      {"{\"materials\": [{\"relief\": {\"image\": \"ruff\"}}]}", {":1:30:", "relief", "ruff", "rough"}},
+      {"{\"materials\": [{\"relief\": {\"image\": \"gone/x.png\"}}]}", {":1:30:", "relief", "gone/x.png"}},
+      {"{\"materials\": [{\"colour\": [0, 0, 2]}]}", {"colour", "2"}},
+      {"{\"materials\": [{\"colour\": \"red\"}]}", {"colour", "red"}},
+      {"{\"materials\": [{}, {}]}", {":1:20:", "rock", "second"}},
+      {"{\"strata\": {\"layers\": [{\"material\": \"marble\"}]}}", {":1:26:", "marble", "rock"}},
+      {"{\"strata\": {\"layers\": [{\"top\": 3}]}}", {"material"}},
+      {"{\"strata\": {\"layers\": [{\"material\": \"rock\"}, {\"material\": \"rock\"}]}}", {"top"}},
+      {"{\"strata\": {\"layers\": [{\"material\": \"rock\", \"top\": 9}, {\"material\": \"rock\", \"top\": 8}]}}", {"top", "8"}},
+      {"{\"strata\": {\"tops\": \"absolute\"}}", {"tops", "relative", "absolute"}},
+  };
+  for (const Mistake& mistake : mistakes) {
+    const std::string error = error_of(mistake.text);
+    EXPECT_NE(error.find("strata.json:"), std::string::npos) << mistake.text << "\n" << error;
+    EXPECT_EQ(error.find('\n'), std::string::npos) << error;
+    for (const std::string& word : mistake.says) EXPECT_NE(error.find(word), std::string::npos) << mistake.text << "\n" << error;
+  }
+}
+
+}  // namespace
+}  // namespace outcrop
