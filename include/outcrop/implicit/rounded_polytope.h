@@ -1,6 +1,8 @@
 /// A smooth intersection of half-spaces, optionally carved by a relief: what a block of rock is.
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -33,6 +35,8 @@ struct PackedPlanes {
 
   [[nodiscard]] std::size_t size() const noexcept { return nx.size(); }
   void push_back(const Plane& plane);
+  /// Those planes, in the order of `indices`.
+  [[nodiscard]] PackedPlanes only(std::span<const std::size_t> indices) const;
 };
 
 /// Evaluates one rounded polytope: the fold, in the order of `planes`, of
@@ -43,8 +47,10 @@ struct PackedPlanes {
 class PolytopeKernel {
  public:
   PolytopeKernel() = default;
-  /// @param planes    At least 1, relative to the centre.
-  /// @param rounding  R ≥ 0 in metres; 0 is the sharp maximum.
+  /// @param planes    At least 1, relative to the centre; unit normals.
+  /// @param rounding  R ≥ 0 in metres; 0 is the sharp maximum. Needs R > 0 where the warp is active: the gradient of a
+  ///                  sharp edge jumps, and the warped surface would tear.
+  /// @throws ParameterError for a broken bound.
   PolytopeKernel(std::span<const Plane> planes, double rounding, Warp warp, Vec3 relief_origin);
 
   /// out[i] = b(local[i]); gradients when not null. Cost: O(n · planes), vectorised over points.
@@ -54,14 +60,22 @@ class PolytopeKernel {
   /// the warp's amplitude upwards only (the relief only carves).
   [[nodiscard]] Interval bound(const Box& local) const noexcept;
 
-  /// The kernel without the planes that cannot be active in the box: equal to the bit there.
+  /// The kernel without the planes that cannot be active in the box: equal to the bit there. Its lipschitz() is the local
+  /// one of what is left, often far smaller.
   [[nodiscard]] PolytopeKernel narrow(const Box& local) const;
 
   /// 1 without warp, else 1 + Lip(displacement): see the proof in rounded_polytope.cpp.
   [[nodiscard]] double lipschitz() const noexcept { return lipschitz_; }
   [[nodiscard]] std::size_t plane_count() const noexcept { return planes_.size(); }
+  /// The box around the polytope, relative to the centre; nothing when it is unbounded. Cost: O(planes³).
+  [[nodiscard]] std::optional<Box> support() const noexcept;
 
  private:
+  void unwarped(int n, const float* x, const float* y, const float* z, float* out, Vec3f* gradients) const noexcept;
+  void warped(int n, const float* x, const float* y, const float* z, float* out, Vec3f* gradients) const noexcept;
+  [[nodiscard]] Interval plane_bound(std::size_t plane, const Box& local) const noexcept;
+  [[nodiscard]] double rounding_slack(const Box& local) const noexcept;
+
   PackedPlanes planes_;
   float rounding_ = 0.0f;
   Warp warp_;
@@ -80,6 +94,8 @@ class RoundedPolytope final : public Field {
   [[nodiscard]] double lipschitz() const noexcept override;
   [[nodiscard]] Interval bound(const Box& box) const noexcept override;
   [[nodiscard]] FieldPtr narrow(const Box& box) const override;
+  [[nodiscard]] std::optional<Box> support() const noexcept override;
+  [[nodiscard]] const PolytopeKernel& kernel() const noexcept { return kernel_; }
 
  private:
   PolytopeKernel kernel_;

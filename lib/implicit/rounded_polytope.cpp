@@ -1,0 +1,326 @@
+#include "outcrop/implicit/rounded_polytope.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "lanes.h"
+#include "outcrop/core/error.h"
+
+namespace outcrop {
+namespace {
+
+// The Lipschitz constant of a warped polytope.
+//
+// Let c be the fold, g = ∇c, t = |g| ≤ 1, u = g / t, D(p) = A · F(t) · (1 − s) with s = Σ|g_j| d_j / Σ|g_j|, and
+// b(p) = c(q), q = p + D u. With G = ∇c(q) and H the Hessian of c at p:
+//   ∇b = G + (u·G) ∇D + D H (I − u uᵀ) G / t.
+//   |G| ≤ 1, since every fold weighs unit normals with weights that sum to 1.
+//   ∇D = A [F'(t) (1 − s) H u − F(t) ∇s], and ∇s is a convex sum of the relief's gradients, at most its slope S, plus
+//   H v / |g|₁ with v_j = ± (d_j − s): all d_j and s are in [0, 1] and s is one of their means, so |v| ≤ √2; |g|₁ ≥ t.
+//   c is convex, so u·G grows along u: u·G ≥ u·g = t, and the part of G across u is at most √(1 − t²).
+// With |H| ≤ η this gives L ≤ 1 + A S + A η K(t), K(t) = F'(t) + √2 F(t) / t + F(t) √(1 − t²) / t.
+//
+// η grows with the planes that can be active together: a fold step with weight k ∈ [0, 1] bends by k/R in the direction
+// g − n and keeps at most 1 − k²/2 of the bend before it, so η' = max over k of (1 − k²/2) η + δ² k / R, where δ is the
+// largest angle's chord between the new normal and those before it.
+constexpr double kLargestGain = 5.85;  // max K over t ∈ (0, 1] is 5.844, at t = 0.511.
+
+/// K from a lower bound of |g|: it falls where the fade is complete.
+[[nodiscard]] double warp_gain(double least_length) {
+  if (least_length < lanes::kFadeEnd) return kLargestGain;
+  const double t = std::min(least_length, 1.0);
+  return (std::sqrt(2.0) + std::sqrt(1.0 - t * t)) / t;
+}
+
+/// The largest bend after a fold step: see above.
+[[nodiscard]] double bend_after(double bend, double chord_squared, double largest_weight, double rounding) {
+  const double best = bend > 0.0 ? chord_squared / (rounding * bend) : largest_weight;
+  const double k = std::min(best, largest_weight);
+  return (1.0 - 0.5 * k * k) * bend + chord_squared * k / rounding;
+}
+
+[[nodiscard]] double smax(double a, double b, double rounding) {
+  const double k = rounding > 0.0 ? std::max(1.0 - std::abs(a - b) / rounding, 0.0) : 0.0;
+  return std::max(a, b) + rounding / 6.0 * k * k * k;
+}
+
+[[nodiscard]] Vec3 normal(const PackedPlanes& planes, std::size_t k) { return {planes.nx[k], planes.ny[k], planes.nz[k]}; }
+
+/// A lower bound of |g| for every convex sum g of the normals: how far they reach along their mean direction.
+[[nodiscard]] double least_gradient(const PackedPlanes& planes) {
+  Vec3 mean{0.0};
+  for (std::size_t k = 0; k < planes.size(); ++k) mean += normal(planes, k);
+  const double length = glm::length(mean);
+  if (length < 1e-6) return 0.0;
+  double least = 1.0;
+  for (std::size_t k = 0; k < planes.size(); ++k) least = std::min(least, glm::dot(normal(planes, k), mean) / length);
+  return std::max(least, 0.0);
+}
+
+/// `largest_weights[i]` bounds the fold weight k of kept plane i, or is empty for "1 each".
+[[nodiscard]] double warped_lipschitz(const PackedPlanes& planes, std::span<const double> largest_weights, double rounding,
+                                      const Warp& warp) {
+  double bend = 0.0;
+  for (std::size_t k = 1; k < planes.size(); ++k) {
+    double chord_squared = 0.0;
+    for (std::size_t i = 0; i < k; ++i) {
+      const Vec3 chord = normal(planes, i) - normal(planes, k);
+      chord_squared = std::max(chord_squared, glm::dot(chord, chord));
+    }
+    bend = bend_after(bend, chord_squared, largest_weights.empty() ? 1.0 : largest_weights[k], rounding);
+  }
+  return 1.0 + warp.amplitude * (warp.relief->slope() + bend * warp_gain(least_gradient(planes)));
+}
+
+[[nodiscard]] double largest_coordinate_sum(const Box& box) {
+  const Vec3 reach = glm::max(glm::abs(box.lo), glm::abs(box.hi));
+  return reach.x + reach.y + reach.z;
+}
+
+[[nodiscard]] lanes::PlaneView view(const PackedPlanes& planes, float rounding) {
+  return {planes.nx.data(),          planes.ny.data(), planes.nz.data(), planes.d.data(),
+          static_cast<int>(planes.size()), rounding};
+}
+
+}  // namespace
+
+void PackedPlanes::push_back(const Plane& plane) {
+  // Adding 0 turns −0 into 0: no sum in the fold is then −0, and dropping a plane cannot change the sign of a zero.
+  nx.push_back(static_cast<float>(plane.normal.x) + 0.0f);
+  ny.push_back(static_cast<float>(plane.normal.y) + 0.0f);
+  nz.push_back(static_cast<float>(plane.normal.z) + 0.0f);
+  d.push_back(static_cast<float>(plane.offset) + 0.0f);
+}
+
+PackedPlanes PackedPlanes::only(std::span<const std::size_t> indices) const {
+  const auto chosen = [&](const std::vector<float>& row) {
+    std::vector<float> result(indices.size());
+    std::transform(indices.begin(), indices.end(), result.begin(), [&](std::size_t k) { return row[k]; });
+    return result;
+  };
+  return {chosen(nx), chosen(ny), chosen(nz), chosen(d)};
+}
+
+PolytopeKernel::PolytopeKernel(std::span<const Plane> planes, double rounding, Warp warp, Vec3 relief_origin)
+    : rounding_(static_cast<float>(rounding)), warp_(std::move(warp)), relief_origin_(relief_origin) {
+  constexpr double kUnitTolerance = 1e-5;
+  require(!planes.empty(), "planes", "at least 1", 0.0);
+  require(rounding == 0.0 || (rounding >= 1e-6 && std::isfinite(rounding)), "rounding", "0, or at least 1e-6 m", rounding);
+  require(warp_.amplitude >= 0.0 && std::isfinite(warp_.amplitude), "amplitude", ">= 0 and finite", warp_.amplitude);
+  require(!warp_.active() || rounding > 0.0, "rounding", "> 0 where a relief is carved", rounding);
+  for (const Plane& plane : planes) {
+    require(std::abs(glm::length(plane.normal) - 1.0) < kUnitTolerance, "normal", "a unit vector", glm::length(plane.normal));
+    require(std::isfinite(plane.offset), "offset", "finite", plane.offset);
+    planes_.push_back(plane);
+  }
+  if (warp_.active()) lipschitz_ = warped_lipschitz(planes_, {}, rounding_, warp_);
+}
+
+void PolytopeKernel::values(std::size_t n, const float* x, const float* y, const float* z, float* out,
+                            Vec3f* gradients) const noexcept {
+  for (std::size_t first = 0; first < n; first += lanes::kLanes) {
+    const int count = static_cast<int>(std::min<std::size_t>(lanes::kLanes, n - first));
+    Vec3f* const block_gradients = gradients ? gradients + first : nullptr;
+    if (warp_.active())
+      warped(count, x + first, y + first, z + first, out + first, block_gradients);
+    else
+      unwarped(count, x + first, y + first, z + first, out + first, block_gradients);
+  }
+}
+
+void PolytopeKernel::unwarped(int n, const float* x, const float* y, const float* z, float* out,
+                              Vec3f* gradients) const noexcept {
+  lanes::Fold fold;
+  if (gradients)
+    lanes::fold_gradients(view(planes_, rounding_), n, x, y, z, fold);
+  else
+    lanes::fold_values(view(planes_, rounding_), n, x, y, z, fold);
+  std::copy_n(fold.value, n, out);
+  if (!gradients) return;
+  for (int i = 0; i < n; ++i) gradients[i] = {fold.gradient[0][i], fold.gradient[1][i], fold.gradient[2][i]};
+}
+
+void PolytopeKernel::warped(int n, const float* x, const float* y, const float* z, float* out,
+                            Vec3f* gradients) const noexcept {
+  const lanes::PlaneView planes = view(planes_, rounding_);
+  lanes::Fold here, there;
+  lanes::Carving carving;
+  lanes::Lane qx, qy, qz;
+  if (gradients)
+    lanes::fold_hessians(planes, n, x, y, z, here);
+  else
+    lanes::fold_gradients(planes, n, x, y, z, here);
+  lanes::carve(warp_, relief_origin_, n, x, y, z, here.gradient, gradients != nullptr, carving);
+  for (int i = 0; i < n; ++i) {
+    qx[i] = x[i] + carving.step[i] * here.gradient[0][i];
+    qy[i] = y[i] + carving.step[i] * here.gradient[1][i];
+    qz[i] = z[i] + carving.step[i] * here.gradient[2][i];
+  }
+  if (gradients)
+    lanes::fold_gradients(planes, n, qx, qy, qz, there);
+  else
+    lanes::fold_values(planes, n, qx, qy, qz, there);
+  std::copy_n(there.value, n, out);
+  if (!gradients) return;
+  for (int i = 0; i < n; ++i) {
+    // ∇b = G + (u·G) ∇D + D H (I − u uᵀ) G / t, with everything that H multiplies gathered into one vector.
+    const Vec3f far{there.gradient[0][i], there.gradient[1][i], there.gradient[2][i]};
+    const Vec3f unit = Vec3f{here.gradient[0][i], here.gradient[1][i], here.gradient[2][i]} * (1.0f / carving.length[i]);
+    const Vec3f by_g{carving.blend_by_g[0][i], carving.blend_by_g[1][i], carving.blend_by_g[2][i]};
+    const Vec3f by_p{carving.blend_by_p[0][i], carving.blend_by_p[1][i], carving.blend_by_p[2][i]};
+    const float along = glm::dot(unit, far);
+    const Vec3f bent = along * (carving.fade_gain[i] * unit + carving.blend_gain[i] * by_g) + carving.step[i] * (far - along * unit);
+    const float xx = here.hessian[0][i], yy = here.hessian[1][i], zz = here.hessian[2][i];
+    const float yz = here.hessian[3][i], xz = here.hessian[4][i], xy = here.hessian[5][i];
+    gradients[i] = far + along * carving.blend_gain[i] * by_p +
+                   Vec3f{xx * bent.x + xy * bent.y + xz * bent.z, xy * bent.x + yy * bent.y + yz * bent.z,
+                         xz * bent.x + yz * bent.y + zz * bent.z};
+  }
+}
+
+Interval PolytopeKernel::plane_bound(std::size_t plane, const Box& local) const noexcept {
+  const Vec3 n = normal(planes_, plane);
+  const Vec3 half = 0.5 * local.size();
+  const double centre = glm::dot(n, local.centre()) + planes_.d[plane];
+  const double reach = glm::dot(glm::abs(n), half);
+  return {centre - reach, centre + reach};
+}
+
+double PolytopeKernel::rounding_slack(const Box& local) const noexcept {
+  // Each plane's sum of four terms and each fold step may be off by an epsilon of the largest number in it.
+  double largest = largest_coordinate_sum(local) + rounding_;
+  for (const float offset : planes_.d) largest = std::max(largest, largest_coordinate_sum(local) + std::abs(double{offset}));
+  return 1e-6 + static_cast<double>(planes_.size() + 8) * std::numeric_limits<float>::epsilon() * largest;
+}
+
+Interval PolytopeKernel::bound(const Box& local) const noexcept {
+  // smax grows with both arguments, so folding the ends bounds the fold; the fold is 1-Lipschitz, so its value at the
+  // centre bounds it too. The warp only carves: c(p) ≤ b(p) ≤ c(p) + amplitude, since c is convex and 1-Lipschitz.
+  Interval fold = plane_bound(0, local);
+  const Vec3 centre = local.centre();
+  double at_centre = glm::dot(normal(planes_, 0), centre) + planes_.d[0];
+  for (std::size_t k = 1; k < planes_.size(); ++k) {
+    const Interval h = plane_bound(k, local);
+    fold = {smax(fold.lo, h.lo, rounding_), smax(fold.hi, h.hi, rounding_)};
+    at_centre = smax(at_centre, glm::dot(normal(planes_, k), centre) + planes_.d[k], rounding_);
+  }
+  const double reach = local.half_diagonal();
+  const double slack = rounding_slack(local);
+  const double carved = warp_.active() ? warp_.amplitude : 0.0;
+  return {std::max(fold.lo, at_centre - reach) - slack, std::min(fold.hi, at_centre + reach) + slack + carved};
+}
+
+PolytopeKernel PolytopeKernel::narrow(const Box& local) const {
+  // A warped point lies up to `amplitude` outside of the box: planes are judged there too.
+  const Box reached = warp_.active() ? local.grown(warp_.amplitude) : local;
+  const Vec3 centre = reached.centre();
+  const double reach = reached.half_diagonal();
+  const double apart = rounding_ + 1e-5 + 2.0 * rounding_slack(reached);  // Beyond this the fold weight is 0 to the bit.
+
+  std::vector<std::size_t> kept{0};
+  std::vector<double> largest_weights{0.0};
+  Interval fold = plane_bound(0, reached);
+  double at_centre = glm::dot(normal(planes_, 0), centre) + planes_.d[0];
+  for (std::size_t k = 1; k < planes_.size(); ++k) {
+    const Interval h = plane_bound(k, reached);
+    if (h.hi <= fold.lo - apart) continue;
+    if (h.lo >= fold.hi + apart) {
+      kept = {k};
+      largest_weights = {0.0};
+      fold = h;
+      at_centre = glm::dot(normal(planes_, k), centre) + planes_.d[k];
+      continue;
+    }
+    const double gap = std::max({h.lo - fold.hi, fold.lo - h.hi, 0.0});
+    kept.push_back(k);
+    largest_weights.push_back(rounding_ > 0.0f ? std::clamp(1.0 - (gap - 1e-5) / rounding_, 0.0, 1.0) : 1.0);
+    at_centre = smax(at_centre, glm::dot(normal(planes_, k), centre) + planes_.d[k], rounding_);
+    fold = intersection(Interval{smax(fold.lo, h.lo, rounding_), smax(fold.hi, h.hi, rounding_)},
+                        Interval{at_centre - reach, at_centre + reach});
+  }
+  PolytopeKernel result;
+  result.planes_ = planes_.only(kept);
+  result.rounding_ = rounding_;
+  result.warp_ = warp_;
+  result.relief_origin_ = relief_origin_;
+  if (warp_.active())
+    result.lipschitz_ = std::min(lipschitz_, warped_lipschitz(result.planes_, largest_weights, rounding_, warp_));
+  return result;
+}
+
+std::optional<Box> PolytopeKernel::support() const noexcept {
+  // The corners of the sharp polytope, which contains the rounded one: all triples of planes, within a far box that tells
+  // whether it is bounded.
+  constexpr double kFar = 1e7;
+  std::vector<Plane> sides;
+  for (std::size_t k = 0; k < planes_.size(); ++k) sides.push_back({normal(planes_, k), planes_.d[k]});
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double sign : {-1.0, 1.0}) {
+      Plane side{Vec3(0.0), -kFar};
+      side.normal[axis] = sign;
+      sides.push_back(side);
+    }
+  Box box;
+  for (std::size_t i = 0; i < sides.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      const Vec3 edge = glm::cross(sides[i].normal, sides[j].normal);
+      if (glm::length(edge) < 1e-9) continue;
+      for (std::size_t k = 0; k < j; ++k) {
+        const double volume = glm::dot(edge, sides[k].normal);
+        if (std::abs(volume) < 1e-9) continue;
+        const Vec3 corner = -(sides[k].offset * edge + sides[i].offset * glm::cross(sides[j].normal, sides[k].normal) +
+                              sides[j].offset * glm::cross(sides[k].normal, sides[i].normal)) /
+                            volume;
+        const double tolerance = 1e-6 * (1.0 + glm::length(corner));
+        if (std::all_of(sides.begin(), sides.end(), [&](const Plane& s) { return s.distance(corner) <= tolerance; }))
+          box.include(corner);
+      }
+    }
+  if (box.empty() || largest_coordinate_sum(box) > 0.1 * kFar) return std::nullopt;
+  return box.grown(rounding_slack(box));
+}
+
+RoundedPolytope::RoundedPolytope(PolytopeKernel kernel, const Vec3& centre) : kernel_(std::move(kernel)), centre_(centre) {}
+
+RoundedPolytope::RoundedPolytope(std::span<const Plane> planes, const Vec3& centre, double rounding, Warp warp)
+    : centre_(centre) {
+  std::vector<Plane> local(planes.begin(), planes.end());
+  for (Plane& plane : local) plane.offset = plane.distance(centre);
+  kernel_ = PolytopeKernel(local, rounding, std::move(warp), centre);
+}
+
+void RoundedPolytope::values(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept {
+  constexpr std::size_t kBlock = 4 * lanes::kLanes;
+  std::array<float, kBlock> x, y, z, value;
+  std::array<Vec3f, kBlock> gradient;
+  for (std::size_t first = 0; first < points.size(); first += kBlock) {
+    const std::size_t n = std::min(kBlock, points.size() - first);
+    for (std::size_t i = 0; i < n; ++i) {
+      x[i] = static_cast<float>(points.x[first + i] - centre_.x);
+      y[i] = static_cast<float>(points.y[first + i] - centre_.y);
+      z[i] = static_cast<float>(points.z[first + i] - centre_.z);
+    }
+    kernel_.values(n, x.data(), y.data(), z.data(), value.data(), gradients.empty() ? nullptr : gradient.data());
+    for (std::size_t i = 0; i < n; ++i) values[first + i] = value[i];
+    if (!gradients.empty())
+      for (std::size_t i = 0; i < n; ++i) gradients[first + i] = gradient[i];
+  }
+}
+
+double RoundedPolytope::lipschitz() const noexcept { return kernel_.lipschitz(); }
+
+Interval RoundedPolytope::bound(const Box& box) const noexcept { return kernel_.bound(box.moved(-centre_)); }
+
+FieldPtr RoundedPolytope::narrow(const Box& box) const {
+  return std::make_shared<RoundedPolytope>(kernel_.narrow(box.moved(-centre_)), centre_);
+}
+
+std::optional<Box> RoundedPolytope::support() const noexcept {
+  const std::optional<Box> local = kernel_.support();
+  return local ? std::optional(local->moved(centre_)) : std::nullopt;
+}
+
+}  // namespace outcrop
