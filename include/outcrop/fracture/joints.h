@@ -33,6 +33,8 @@ struct JointSet {
   double share = 1.0;         ///< Relative number of discs.
   double radius_lo = 5.0;     ///< Metres at a 20 m tile; scaled with the tile's side.
   double radius_hi = 5.0;
+  /// a of a radius density ∝ r^−(a+1) on [radius_lo, radius_hi], as fracture networks are fitted; 0: uniform.
+  double radius_exponent = 0.0;
 };
 
 /// How one type distributes its joints in a tile of 20 m.
@@ -42,13 +44,26 @@ struct JointPattern {
   double irregular_share = 0.0;  ///< Share of the discs whose normals are uniform on the sphere.
   double centre_spacing = 2.0;   ///< Smallest distance between disc centres (of one set), metres at 20 m.
   double column_width = 0.0;     ///< > 0: columns of this mean width along z first (Voronoi cells), then the sets.
+  /// A disc splits a block that it enters when it covers at least this share of the cut, [0, 1]: at 0 a joint grows from
+  /// the least touch, at 1 it never grows beyond its disc.
+  double covered_share = 0.0;
 };
 
 /// The pattern that stands for a type; numbers and sources in joints.cpp.
 [[nodiscard]] JointPattern joint_pattern(BlockType type);
 
 /// Draws the discs of a pattern in a tile of `side` metres; largest radius first, ties in draw order.
+///
+/// Discs are dealt to the sets in proportion to their shares. Centres of one set keep their distance on the torus where
+/// there is room for it. Disc i has a random stream of its own.
+/// @throws ParameterError when the pattern is outside its bounds, see check_pattern.
 [[nodiscard]] std::vector<Disc> draw_discs(const JointPattern& pattern, double side, Seed seed);
+
+/// @throws ParameterError for a share, radius, concentration or count that makes no sense.
+void check_pattern(const JointPattern& pattern);
+
+/// P32, the area of discs in a volume: Σ π r² / side³, in 1/m.
+[[nodiscard]] double intensity(const std::vector<Disc>& discs, double side) noexcept;
 
 /// A unit vector from the Fisher distribution about `mean`: cos θ = 1 + ln(u + (1 − u) e^(−2κ)) / κ.
 [[nodiscard]] Vec3 fisher_direction(const Vec3& mean, double kappa, Rng& rng);

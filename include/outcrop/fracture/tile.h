@@ -14,11 +14,14 @@
 
 namespace outcrop {
 
+/// Default sample spacings a tile: 14 500 samples, the setting of Table 1 of Paris et al. 2020.
+inline constexpr double kSpacingsPerSide = 27.04;
+
 struct TileOptions {
   BlockType type = BlockType::Equidimensional;
   JointPattern pattern{};         ///< Empty sets and no columns: joint_pattern(type).
   double side = 20.0;             ///< Metres, > 0.
-  double spacing = 0.0;           ///< Sample spacing, metres; 0: side / 27.4, about 14 500 samples.
+  double spacing = 0.0;           ///< Sample spacing, metres; 0: side / kSpacingsPerSide.
   double neighbour_factor = 1.6;  ///< Graph radius over spacing, [1, 4].
   double aperture = 0.04;         ///< Width of a crack, metres, ≥ 0 and below the spacing.
   double rounding = 0.25;         ///< R of the smooth intersection; limited by half of a block's inradius.
@@ -46,7 +49,10 @@ struct Block {
 
 /// What happened on the way, for reports; compare with Table 1 of the paper.
 struct TileStatistics {
-  std::size_t samples = 0, discs = 0, clusters = 0, merged_chips = 0;
+  std::size_t samples = 0, discs = 0, clusters = 0;
+  std::size_t merged_chips = 0;     ///< Chips that stay with their block, because the joint ends instead of parting them.
+  std::size_t added_joints = 0;     ///< Joints that no disc stands for; without them pieces would wrap around the tile.
+  double largest_bend = 0.0;        ///< Largest turn of a disc's normal that made it close around the tile, radians.
   double seconds = 0.0;
   double filled_share = 0.0;        ///< Of the cube, by blocks; from volumes.
   double overlap_share = 0.0;       ///< Of the cube covered twice or more, by random points.

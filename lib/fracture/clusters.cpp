@@ -1,0 +1,212 @@
+#include "outcrop/fracture/clusters.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "outcrop/core/error.h"
+#include "region.h"
+
+namespace outcrop {
+namespace {
+
+constexpr double kTolerance = 1e-10;  // Of the side: vertices nearer to a plane than this are on it.
+
+/// Parts one cell after the other by the discs that reach it.
+class CellSplitter {
+ public:
+  CellSplitter(const std::vector<Vec3>& samples, const Graph& graph, const std::vector<Disc>& discs,
+               const ClusterOptions& options)
+      : graph_(graph),
+        discs_(discs),
+        options_(options),
+        owner_(samples.size(), 0),
+        position_(samples.size(), Vec3(0.0)),
+        height_(samples.size(), 0.0) {}
+
+  /// The clusters of a region without periods, those below a joint before those above it.
+  void split(Region region, std::vector<Cluster>& clusters) {
+    std::vector<Node> stack;
+    stack.push_back(root(std::move(region)));
+    while (!stack.empty()) {
+      Node node = std::move(stack.back());
+      stack.pop_back();
+      if (node.next == node.images.size()) {
+        clusters.push_back(finished(std::move(node)));
+        continue;
+      }
+      const DiscImage image = node.images[node.next++];
+      if (auto parts = parted(node, image); !parts.empty()) {
+        stack.push_back(std::move(parts[1]));
+        stack.push_back(std::move(parts[0]));
+      } else {
+        stack.push_back(std::move(node));
+      }
+    }
+  }
+
+  [[nodiscard]] std::size_t stopped() const noexcept { return stopped_; }
+
+ private:
+  struct DiscImage {
+    int disc;
+    Vec3 centre;
+  };
+  struct Node {
+    Polytope shape;
+    std::vector<std::uint32_t> samples;
+    std::vector<DiscImage> images;
+    std::size_t next = 0;
+    std::uint32_t id = 0;
+  };
+
+  Node root(Region region) {
+    Node node;
+    node.id = ++last_id_;
+    node.samples = std::move(region.samples);
+    for (std::size_t k = 0; k < node.samples.size(); ++k) {
+      owner_[node.samples[k]] = node.id;
+      position_[node.samples[k]] = region.positions[k];
+    }
+    Vec3 middle{0.0};
+    if (!region.walls.empty()) {
+      std::vector<Plane> planes;
+      for (const Region::Wall& wall : region.walls) planes.push_back(wall.plane);
+      middle = inscribed_ball(planes, -planes[0].offset * planes[0].normal, options_.side).centre;
+    }
+    // No cell is wider: its walls are a tile apart and at least 30° from each other.
+    node.shape = box_polytope(Box{middle, middle}.grown(16.0 * options_.side));
+    for (const Region::Wall& wall : region.walls)
+      node.shape = clipped(node.shape, wall.plane, wall.joint, kTolerance * options_.side);
+    for (const Polytope::Face& face : node.shape.faces) assert(face.joint != -1), (void)face;
+    add_images(node, region.spent);
+    return node;
+  }
+
+  // Every image of a disc whose sphere reaches the cell's bounds, in the order of the discs.
+  void add_images(Node& node, const std::vector<int>& spent) const {
+    const Box bounds = node.shape.bounds();
+    const double side = options_.side;
+    for (int i = 0; i < static_cast<int>(discs_.size()); ++i) {
+      if (std::find(spent.begin(), spent.end(), i) != spent.end()) continue;
+      const Disc& disc = discs_[static_cast<std::size_t>(i)];
+      const Vec3 lo = glm::ceil((bounds.lo - disc.radius - disc.centre) / side);
+      const Vec3 hi = glm::floor((bounds.hi + disc.radius - disc.centre) / side);
+      for (double z = lo.z; z <= hi.z; ++z)
+        for (double y = lo.y; y <= hi.y; ++y)
+          for (double x = lo.x; x <= hi.x; ++x) node.images.push_back({i, disc.centre + side * Vec3(x, y, z)});
+    }
+  }
+
+  // Whether the disc may meet the cell: no face has it all outside.
+  [[nodiscard]] bool reaches(const Polytope& shape, const Disc& disc, const Vec3& centre) const {
+    for (const Polytope::Face& face : shape.faces) {
+      const double c = glm::dot(disc.normal, face.plane.normal);
+      const double extent = disc.radius * std::sqrt(std::max(0.0, 1.0 - c * c));
+      if (face.plane.distance(centre) > extent) return false;
+    }
+    return true;
+  }
+
+  // The two sides of a joint, or nothing where it does not enter the cell or ends in it.
+  std::vector<Node> parted(Node& node, const DiscImage& image) {
+    const Disc& disc = discs_[static_cast<std::size_t>(image.disc)];
+    const Plane plane{disc.normal, -glm::dot(disc.normal, image.centre)};
+    const Interval range = node.shape.distances(plane);
+    if (range.lo >= 0.0 || range.hi <= 0.0 || !reaches(node.shape, disc, image.centre)) return {};
+    if (!enters(node, disc, image.centre, plane)) return {};
+
+    std::size_t below = 0;
+    for (const std::uint32_t i : node.samples) below += height_[i] < 0.0;
+    const auto fewest = static_cast<std::size_t>(options_.min_samples);
+    if (below < fewest || node.samples.size() - below < fewest) return stop();
+    const double tolerance = kTolerance * options_.side;
+    std::vector<Node> parts(2);
+    parts[0].shape = clipped(node.shape, plane, image.disc, tolerance);
+    parts[1].shape = clipped(node.shape, {-plane.normal, -plane.offset}, image.disc, tolerance);
+    for (const Node& part : parts)
+      if (part.shape.empty() || inscribed_ball(part.shape).radius < options_.min_inradius) return stop();
+
+    for (Node& part : parts) {
+      part.id = ++last_id_;
+      const Box bounds = part.shape.bounds();
+      for (std::size_t k = node.next; k < node.images.size(); ++k) {
+        const DiscImage& later = node.images[k];
+        if (bounds.grown(discs_[static_cast<std::size_t>(later.disc)].radius).contains(later.centre))
+          part.images.push_back(later);
+      }
+    }
+    for (const std::uint32_t i : node.samples) {
+      Node& part = parts[height_[i] < 0.0 ? 0 : 1];
+      owner_[i] = part.id;
+      part.samples.push_back(i);
+    }
+    return parts;
+  }
+
+  // Whether the disc lies between samples that see each other, and covers enough of what its plane parts.
+  // Writes the samples' distances from the plane.
+  bool enters(const Node& node, const Disc& disc, const Vec3& centre, const Plane& plane) {
+    for (const std::uint32_t i : node.samples) height_[i] = plane.distance(position_[i]);
+    std::size_t through_plane = 0;
+    std::size_t through_disc = 0;
+    for (const std::uint32_t i : node.samples) {
+      const double below = height_[i];
+      if (below >= 0.0 || below < -options_.sight) continue;
+      for (std::uint32_t e = graph_.first[i]; e < graph_.first[i + 1]; ++e) {
+        const std::uint32_t j = graph_.targets[e];
+        if (owner_[j] != node.id || height_[j] < 0.0) continue;
+        // Neighbours around the torus may be far apart in the cell: then they see each other through its walls.
+        const Vec3 d = position_[j] - position_[i];
+        if (glm::dot(d, d) > options_.sight * options_.sight * (1.0 + 1e-9)) continue;
+        const Vec3 from_centre = position_[i] + below / (below - height_[j]) * d - centre;
+        ++through_plane;
+        through_disc += glm::dot(from_centre, from_centre) <= disc.radius * disc.radius;
+      }
+    }
+    return through_disc > 0 &&
+           static_cast<double>(through_disc) >= options_.covered_share * static_cast<double>(through_plane);
+  }
+
+  std::vector<Node> stop() {
+    ++stopped_;
+    return {};
+  }
+
+  Cluster finished(Node node) const {
+    Cluster cluster;
+    cluster.shape = std::move(node.shape);
+    for (const std::uint32_t i : node.samples) cluster.positions.push_back(position_[i]);
+    cluster.samples = std::move(node.samples);
+    return cluster;
+  }
+
+  const Graph& graph_;
+  const std::vector<Disc>& discs_;
+  const ClusterOptions& options_;
+  std::vector<std::uint32_t> owner_;  // Of each sample: the id of its node.
+  std::vector<Vec3> position_;        // Of each sample in its cell.
+  std::vector<double> height_;        // Of each sample over the plane in question.
+  std::uint32_t last_id_ = 0;
+  std::size_t stopped_ = 0;
+};
+
+}  // namespace
+
+Clusters split_samples(const std::vector<Vec3>& samples, const Graph& graph, const std::vector<Disc>& discs,
+                       const ClusterOptions& options, Seed seed, const Task& task) {
+  require(graph.first.size() == samples.size() + 1, "graph", "one row a sample", static_cast<double>(graph.first.size()));
+  RegionSplitter regions(discs, options, seed);
+  CellSplitter cells(samples, graph, discs, options);
+  Clusters clusters;
+  for (Region& region : regions.run(samples)) {
+    task.check();
+    cells.split(std::move(region), clusters.list);
+  }
+  clusters.stopped_joints = cells.stopped();
+  clusters.added_joints = regions.added_joints();
+  clusters.largest_bend = regions.largest_bend();
+  return clusters;
+}
+
+}  // namespace outcrop

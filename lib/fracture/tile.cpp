@@ -1,0 +1,161 @@
+#include "outcrop/fracture/tile.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "outcrop/core/error.h"
+#include "outcrop/core/parallel.h"
+#include "outcrop/fracture/clusters.h"
+#include "outcrop/fracture/hull.h"
+#include "outcrop/fracture/polytope.h"
+#include "outcrop/fracture/samples.h"
+#include "overlap.h"
+
+namespace outcrop {
+namespace {
+
+constexpr double kPatternSide = 20.0;   // Metres: the tile for which patterns give their lengths.
+constexpr double kTolerance = 1e-10;    // Of the side: see clusters.cpp.
+constexpr double kLeastInradius = 0.4;  // Of the spacing: a thinner piece would be a blade between two samples.
+constexpr std::size_t kAnchors = 24;
+constexpr std::size_t kOverlapProbes = 20'000;
+
+struct PlainHull {
+  double volume = 0.0;
+  std::size_t planes = 0;
+};
+
+void check(const TileOptions& options, double spacing) {
+  require(std::isfinite(options.side) && options.side > 0.0, "side", "> 0 and finite", options.side);
+  require(spacing > 0.0 && spacing <= options.side / 8.0, "spacing", "in (0, side / 8]", spacing);
+  require(options.neighbour_factor >= 1.0 && options.neighbour_factor <= 4.0, "neighbour_factor", "in [1, 4]",
+          options.neighbour_factor);
+  require(options.neighbour_factor * spacing < options.side / 2.0, "neighbour_factor", "below half the side over the spacing",
+          options.neighbour_factor);
+  require(options.aperture >= 0.0 && options.aperture < spacing, "aperture", "≥ 0 and below the spacing", options.aperture);
+  require(std::isfinite(options.rounding) && options.rounding >= 0.0, "rounding", "≥ 0 and finite", options.rounding);
+  require(options.min_block_samples >= 1, "min_block_samples", "≥ 1", options.min_block_samples);
+}
+
+// Points that spread through the block: each is the farthest from those before, the centre counting as the first.
+std::vector<Vec3> spread(const std::vector<Vec3>& points, std::size_t count) {
+  std::vector<double> room(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) room[i] = glm::dot(points[i], points[i]);
+  const auto less = [&](std::size_t a, std::size_t b) {  // ties by place: the order of the samples must not matter
+    if (room[a] != room[b]) return room[a] < room[b];
+    const Vec3& p = points[a];
+    const Vec3& q = points[b];
+    return p.x != q.x ? p.x < q.x : p.y != q.y ? p.y < q.y : p.z < q.z;
+  };
+  std::vector<Vec3> result;
+  while (result.size() < std::min(count, points.size())) {
+    std::size_t best = 0;
+    for (std::size_t i = 1; i < points.size(); ++i)
+      if (less(best, i)) best = i;
+    result.push_back(points[best]);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Vec3 d = points[i] - result.back();
+      room[i] = std::min(room[i], glm::dot(d, d));
+    }
+    room[best] = -1.0;
+  }
+  return result;
+}
+
+// The cell with its walls moved back by half the crack, around the centre of its largest ball.
+Block block_of(const Cluster& cluster, const TileOptions& options) {
+  const double back = 0.5 * options.aperture;
+  const double tolerance = kTolerance * options.side;
+  Polytope shape = box_polytope(cluster.shape.bounds().grown(1.0));
+  for (const Polytope::Face& face : cluster.shape.faces)
+    shape = clipped(shape, {face.plane.normal, face.plane.offset + back}, face.joint, tolerance);
+
+  Block block;
+  const Ball ball = inscribed_ball(shape);
+  block.inradius = ball.radius;
+  block.rounding = std::min(options.rounding, 0.5 * ball.radius);
+  block.centre = ball.centre - options.side * glm::floor(ball.centre / options.side);
+  for (int axis = 0; axis < 3; ++axis)
+    if (block.centre[axis] >= options.side) block.centre[axis] = 0.0;  // floor of a tiny negative number
+  for (const Polytope::Face& face : shape.faces)
+    block.planes.push_back({face.plane.normal, face.plane.distance(ball.centre)});
+  for (Vec3& v : shape.vertices) v -= ball.centre;
+  block.bounds = shape.bounds();
+  block.hull = convex_hull(shape.vertices).value();
+  block.volume = volume(block.hull);
+  std::vector<Vec3> inside;
+  for (const Vec3& p : cluster.positions) {
+    const Vec3 q = p - ball.centre;
+    if (std::all_of(block.planes.begin(), block.planes.end(), [&](const Plane& plane) { return plane.distance(q) <= 0.0; }))
+      inside.push_back(q);
+  }
+  block.anchors = spread(inside, kAnchors);
+  if (block.anchors.empty()) block.anchors.push_back(Vec3(0.0));
+  block.sample_count = static_cast<std::uint32_t>(cluster.samples.size());
+  return block;
+}
+
+}  // namespace
+
+Tile make_tile(const TileOptions& options, Seed seed, const Task& task) {
+  const auto start = std::chrono::steady_clock::now();
+  const double spacing = options.spacing > 0.0 ? options.spacing : options.side / kSpacingsPerSide;
+  check(options, spacing);
+  const bool is_own = !options.pattern.sets.empty() || options.pattern.column_width > 0.0;
+  const JointPattern pattern = is_own ? options.pattern : joint_pattern(options.type);
+  check_pattern(pattern);
+
+  task.begin("fracture", 0);
+  const std::vector<Vec3> samples = poisson_samples(options.side, spacing, seed, task);
+  const double sight = options.neighbour_factor * spacing;
+  const Graph graph = neighbour_graph(samples, options.side, sight);
+  task.check();
+  const std::vector<Disc> discs = draw_discs(pattern, options.side, seed);
+  const ClusterOptions cluster_options{
+      .side = options.side,
+      .sight = sight,
+      .min_samples = options.min_block_samples,
+      .min_inradius = std::max(kLeastInradius * spacing, options.aperture),
+      .covered_share = pattern.covered_share,
+      .column_width = pattern.column_width * options.side / kPatternSide};
+  const Clusters clusters = split_samples(samples, graph, discs, cluster_options, seed, task);
+
+  Tile tile;
+  tile.side = options.side;
+  tile.type = options.type;
+  tile.blocks = parallel_map(
+      clusters.list.size(), [&](std::size_t i) { return block_of(clusters.list[i], options); }, task);
+  const std::vector<PlainHull> plain = parallel_map(
+      clusters.list.size(),
+      [&](std::size_t i) {
+        const BlockMesh hull = thick_hull(clusters.list[i].positions, spacing);
+        return PlainHull{volume(hull), hull.triangles.size()};
+      },
+      task);
+
+  TileStatistics& s = tile.statistics;
+  const double cube = options.side * options.side * options.side;
+  const auto blocks = static_cast<double>(tile.blocks.size());
+  s.samples = samples.size();
+  s.discs = discs.size();
+  s.clusters = clusters.list.size();
+  s.merged_chips = clusters.stopped_joints;
+  s.added_joints = clusters.added_joints;
+  s.largest_bend = clusters.largest_bend;
+  for (const Block& block : tile.blocks) {
+    s.filled_share += block.volume / cube;
+    s.mean_planes += static_cast<double>(block.planes.size()) / blocks;
+    s.max_planes = std::max(s.max_planes, block.planes.size());
+  }
+  for (const PlainHull& hull : plain) {
+    s.plain_filled_share += hull.volume / cube;
+    s.plain_mean_planes += static_cast<double>(hull.planes) / blocks;
+    s.plain_max_planes = std::max(s.plain_max_planes, hull.planes);
+  }
+  s.overlap_share = overlap_share(tile, kOverlapProbes, seed);
+  s.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return tile;
+}
+
+}  // namespace outcrop
