@@ -47,9 +47,10 @@ struct PolygonizeResult {
 /// The zero surface of `field` in a region: closed but for the region's border (Border::Open), manifold, oriented outwards.
 ///
 /// Marching cubes on one integer lattice with searched tables, over bricks of 8³ cells that `bound` cannot exclude and in
-/// which the field is narrowed. Vertices lie on the surface to within resolution / 1000 where f is smooth. The same bytes
-/// for any number of threads. Cost: O(cells crossed) evaluations; memory O(triangles).
-/// @throws ParameterError, Cancelled.
+/// which the field is narrowed. Vertices lie on the surface to within resolution / 1000 where f is smooth, and to within
+/// resolution / 50 where it passes that close to a node of the lattice, so that no triangle degenerates. The mesh's origin is
+/// region.lo. The same bytes for any number of threads. Cost: O(cells crossed) evaluations; memory O(triangles).
+/// @throws ParameterError also when the field's bound or narrow contradict its values; Cancelled.
 [[nodiscard]] PolygonizeResult polygonize(const Field& field, const PolygonizeOptions& options, const Task& task = {});
 
 /// Surface cells, triangles and bytes to expect, from bounds alone and sampled bricks; for --dry-run and memory limits.

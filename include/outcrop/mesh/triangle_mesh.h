@@ -23,4 +23,8 @@ struct TriangleMesh {
   [[nodiscard]] Box bounds() const;                   ///< World.
 };
 
+/// The same surface with positions relative to another origin: what writers and viewers need to see other coordinates.
+/// Positions are rounded to float again; move no farther than floats can hold.
+[[nodiscard]] TriangleMesh rebased(TriangleMesh mesh, const Vec3& origin);
+
 }  // namespace outcrop
