@@ -4,15 +4,18 @@
 #include <cctype>
 #include <cstdint>
 #include <cstring>
+#include <fstream>
 #include <limits>
 #include <memory>
 #include <system_error>
 #include <type_traits>
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
 #include "outcrop/core/error.h"
 #include "outcrop/core/file.h"
+#include "png_chunks.h"
 
 namespace outcrop {
 
@@ -81,7 +84,8 @@ class Reader {
     if (fs::is_regular_file(found) && fs::file_size(path, error) == 0 && !error) fail("an empty file");
     OIIO::ImageSpec hints;
     hints.attribute("oiio:UnassociatedAlpha", 1);  // heights must not be multiplied by an alpha channel
-    input_ = OIIO::ImageInput::open(path.string(), &hints);
+    open_png(hints);
+    if (!input_) input_ = OIIO::ImageInput::open(path.string(), &hints);
     if (!input_) fail(one_line(OIIO::geterror()));
     input_->threads(1);
   }
@@ -116,6 +120,18 @@ class Reader {
     throw InputError(path_.string() + ": expected a readable image, got " + got);
   }
 
+  // Where the file is a PNG: from memory, without what makes libpng print.
+  void open_png(const OIIO::ImageSpec& hints) {
+    char head[8] = {};
+    std::ifstream(path_, std::ios::binary).read(head, sizeof head);
+    if (!png::is_png({head, sizeof head})) return;
+    const png::Reduced file = png::reduced(read_text(path_));
+    if (!file.bytes) fail("a damaged one (" + file.problem + ")");
+    png_ = *file.bytes;
+    memory_ = std::make_unique<OIIO::Filesystem::IOMemReader>(png_.data(), png_.size());
+    input_ = OIIO::ImageInput::open("from-memory.png", &hints, memory_.get());
+  }
+
   static std::string extent(const OIIO::ImageSpec& spec) {
     return std::to_string(spec.width) + " x " + std::to_string(spec.height) + " pixels of " +
            std::to_string(spec.nchannels) + " channels";
@@ -146,6 +162,8 @@ class Reader {
   }
 
   fs::path path_;
+  std::string png_;
+  std::unique_ptr<OIIO::Filesystem::IOMemReader> memory_;
   std::unique_ptr<OIIO::ImageInput> input_;
   std::vector<std::byte> bytes_;
 };
@@ -187,6 +205,7 @@ void write_image(const fs::path& path, const Image& image) {
     spec.attribute("oiio:UnassociatedAlpha", 1);
   } else {
     spec.attribute("compression", "zip");
+    spec.attribute("DateTime", "");  // else the time of writing: the same picture must be the same bytes
   }
   const auto expect = [&](bool holds, const std::string& why) {
     if (!holds) throw SystemError(path.string() + ": cannot be written: " + one_line(why));

@@ -4,7 +4,6 @@
 #include <charconv>
 #include <cctype>
 #include <cmath>
-#include <cstring>
 #include <unordered_set>
 
 #include <nlohmann/json.hpp>
@@ -65,7 +64,7 @@ class Builder {
 
   Builder(std::string_view text, std::string_view name)
       : text_(text), file_(std::make_shared<const std::string>(name)) {
-    if (text_.starts_with(kByteOrderMark)) cursor_ = line_start_ = kByteOrderMark.size();
+    if (text_.starts_with(kByteOrderMark)) cursor_ = kByteOrderMark.size();
   }
 
   bool null() {
@@ -127,20 +126,43 @@ class Builder {
     std::unordered_set<std::string> keys{};
   };
 
+  static bool in_word(char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) || c == '+' || c == '-' || c == '.' || c == '_';
+  }
   [[nodiscard]] bool at_end() const { return cursor_ >= text_.size(); }
   [[nodiscard]] char here() const { return at_end() ? '\0' : text_[cursor_]; }
 
   void step() {
-    if (text_[cursor_++] == '\n') {
+    const unsigned char passed = static_cast<unsigned char>(text_[cursor_++]);
+    if (passed == '\n') {
       ++line_;
-      line_start_ = cursor_;
+      column_ = 1;
+    } else if ((passed & 0xC0) != 0x80) {
+      ++column_;  // characters, not bytes
     }
   }
   void skip(std::string_view which) {
     while (!at_end() && which.find(text_[cursor_]) != which.npos) step();
   }
   void skip_word() {
-    while (!at_end() && (std::isalnum(static_cast<unsigned char>(here())) || std::strchr("+-._", here()))) step();
+    while (!at_end() && std::isalpha(static_cast<unsigned char>(here()))) step();
+  }
+  void skip_number() {
+    skip("-");
+    if (here() == '0') {
+      step();  // nothing may follow it but a fraction or an exponent
+    } else {
+      skip("0123456789");
+    }
+    if (here() == '.') {
+      step();
+      skip("0123456789");
+    }
+    if (here() == 'e' || here() == 'E') {
+      step();
+      skip("+-");
+      skip("0123456789");
+    }
   }
   void skip_string() {
     step();
@@ -152,10 +174,7 @@ class Builder {
   }
   void mark_token() {
     token_line_ = line_;
-    token_column_ = 1;
-    for (std::size_t i = line_start_; i < cursor_; ++i) {
-      if ((static_cast<unsigned char>(text_[i]) & 0xC0) != 0x80) ++token_column_;  // characters, not bytes
-    }
+    token_column_ = column_;
   }
   void enter_token() {
     skip(" \t\r\n,:");
@@ -189,7 +208,7 @@ class Builder {
   }
   bool number(double v) {
     enter_token();
-    skip_word();
+    skip_number();
     return add({.type = Json::Type::Number, .number = v});
   }
   bool open(Json::Type type) {
@@ -261,9 +280,8 @@ class Builder {
   [[nodiscard]] std::string rest() const {
     if (at_end()) return text_.find_first_not_of(" \t\r\n") == text_.npos ? "an empty file" : "the end of the file";
     std::size_t end = cursor_ + 1;
-    if (std::isalnum(static_cast<unsigned char>(here())) || here() == '-' || here() == '+') {
-      while (end < text_.size() && (std::isalnum(static_cast<unsigned char>(text_[end])) || std::strchr("+-._", text_[end])))
-        ++end;
+    if (in_word(here())) {
+      while (end < text_.size() && in_word(text_[end])) ++end;
     } else if (here() == '"') {
       while (end < text_.size() && text_[end] != '"' && text_[end] != '\n') ++end;
       return "the string " + in_quotes(text_.substr(cursor_ + 1, end - cursor_ - 1));
@@ -279,8 +297,8 @@ class Builder {
   std::string_view text_;
   std::shared_ptr<const std::string> file_;
   std::size_t cursor_ = 0;
-  std::size_t line_start_ = 0;
   int line_ = 1;
+  int column_ = 1;
   int token_line_ = 1;
   int token_column_ = 1;
   State state_ = State::BeforeValue;
