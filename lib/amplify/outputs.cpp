@@ -94,7 +94,7 @@ std::string count_text(double value) {
   char text[48];
   std::snprintf(text, sizeof text, "%.0f", value);
   std::string grouped = text;
-  for (std::size_t i = grouped.size(); i > 3; i -= 3) grouped.insert(i - 3, " ");
+  for (std::size_t i = grouped.size(); i > 3; i -= 3) grouped.insert(i - 3, 1, ' ');
   return grouped;
 }
 

@@ -1,0 +1,78 @@
+/// amplify: a heightmap in, rocky terrain out.
+#include <CLI/CLI.hpp>
+#include <array>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "cli.h"
+#include "outcrop/amplify/run_amplify.h"
+
+namespace {
+
+/// The command line in one piece, for the report.
+std::string command_text(int argc, char** argv) {
+  std::string text = "amplify";
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    const bool plain = !word.empty() && word.find_first_of(" \t\"'\\$*?") == std::string::npos;
+    text += plain ? " " + word : " '" + word + "'";
+  }
+  return text;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Amplifies a heightmap with fractured rock: a mesh, a ray-traced picture, a report.", "amplify"};
+  outcrop::AmplifyRun run;
+  outcrop::cli::Options options;
+
+  app.add_option("HEIGHTMAP", run.heightmap, "Elevations: EXR, TIFF, GeoTIFF, PNG or SRTM .hgt")->required();
+  app.add_option("--strata", run.strata, "Description of the rock, strata.json");
+  app.add_option("-o,--output", run.meshes, "Mesh to write: .ply, .obj, .stl or .vdb; may be repeated")
+      ->allow_extra_args(false);
+  app.add_option("--preview", run.previews, "Picture to write: .png or .exr; may be repeated")->allow_extra_args(false);
+  app.add_option("--report", run.report, "Report to write, JSON");
+
+  app.add_option("--cell-size", run.heights.cell_size, "Metres between samples; default: the file's, else 1");
+  app.add_option("--height-scale", run.heights.height_scale, "Elevation = sample * scale + offset")->capture_default_str();
+  app.add_option("--height-offset", run.heights.height_offset, "Metres")->capture_default_str();
+  bool bilinear = false;
+  app.add_flag("--bilinear", bilinear, "Interpolate samples bilinearly instead of smoothly");
+  std::string nodata;
+  app.add_option("--nodata", nodata, "What to do where data are missing: hole or fill; default: the strata file's")
+      ->check(CLI::IsMember({"hole", "fill"}));
+
+  app.add_option("--region", run.region,
+                 "X0 Y0 X1 Y1 in map coordinates where the heightmap has some, else metres from its south-west corner; "
+                 "default: everything, or the steepest part of a large terrain");
+  app.add_option("--resolution", run.resolution, "Edge of the mesh's cells, metres; default: a twelfth of a block");
+  app.add_flag("--solid", run.solid, "Close the sheet with walls and a floor");
+  app.add_option("--seed", run.seed, "Same seed, same rock")->capture_default_str();
+
+  std::vector<int> size{run.width, run.height};
+  app.add_option("--size", size, "Width and height of previews, pixels")->expected(2)->capture_default_str();
+  app.add_option("--camera", run.camera,
+                 "X Y Z TX TY TZ: position and target in the mesh's coordinates, metres from the south-west corner; "
+                 "default: frames the steepest part");
+  app.add_option("--fov-deg", run.fov_deg, "Vertical field of view of the camera")->capture_default_str();
+
+  app.add_option("--threads", run.threads, "0: all cores")->capture_default_str();
+  app.add_option("--memory-limit", run.memory_limit_gib, "GiB; 0: half of the machine's memory")->capture_default_str();
+  app.add_flag("--dry-run", run.dry_run, "Only say what to expect: blocks, cells, triangles, seconds, bytes");
+  app.add_flag("-q,--quiet", options.quiet, "No messages but errors");
+  app.add_flag("-v,--verbose", options.verbose, "Progress even when stderr is no terminal");
+
+  return outcrop::cli::run(app, argc, argv, options, [&](const outcrop::Task& task) {
+    if (bilinear) run.interpolation = outcrop::Interpolation::Bilinear;
+    if (!nodata.empty()) run.nodata = nodata == "hole" ? outcrop::NodataPolicy::Hole : outcrop::NodataPolicy::Fill;
+    run.width = size[0];
+    run.height = size[1];
+    run.command = command_text(argc, argv);
+    const auto notify = [&](const std::string& line) {
+      if (!options.quiet) std::cerr << "amplify: " << line << '\n';
+    };
+    std::cout << outcrop::run_amplify(run, notify, task);
+  });
+}

@@ -1,0 +1,57 @@
+/// polygonize: a scene, a grid or a mesh in, a clean mesh out.
+#include <CLI/CLI.hpp>
+#include <array>
+#include <iostream>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "cli.h"
+#include "outcrop/amplify/run_polygonize.h"
+
+int main(int argc, char** argv) {
+  CLI::App app{"Meshes a field: a scene of solids, a voxel grid or a closed mesh.", "polygonize"};
+  outcrop::PolygonizeRun run;
+  outcrop::cli::Options options;
+
+  app.add_option("INPUT", run.input, "A scene (.json), a level set (.vdb) or a closed mesh (.ply, .obj, .stl)")->required();
+  app.add_option("-o,--output", run.meshes, "Mesh to write: .ply, .obj, .stl or .vdb; may be repeated")
+      ->allow_extra_args(false);
+  app.add_option("--preview", run.previews, "Picture to write: .png or .exr; may be repeated")->allow_extra_args(false);
+  app.add_option("--resolution", run.resolution, "Edge of the cells, metres; default: the region's longest side / 128");
+  std::optional<std::array<double, 6>> region;
+  app.add_option("--region", region, "X0 Y0 Z0 X1 Y1 Z1, metres; default: the scene's, else where the solid is");
+
+  const std::map<std::string, outcrop::Border> borders{{"open", outcrop::Border::Open}, {"closed", outcrop::Border::Closed}};
+  std::string border = "closed";
+  app.add_option("--border", border, "Where the solid leaves the region: closed (walls) or open")
+      ->check(CLI::IsMember({"open", "closed"}))
+      ->capture_default_str();
+  const std::map<std::string, outcrop::Parts> kept{
+      {"all", outcrop::Parts::All}, {"grounded", outcrop::Parts::Grounded}, {"largest", outcrop::Parts::Largest}};
+  std::string parts = "all";
+  app.add_option("--parts", parts, "Parts to keep: all, grounded (those that reach the region's floor) or largest")
+      ->check(CLI::IsMember({"all", "grounded", "largest"}))
+      ->capture_default_str();
+  app.add_flag("--keep-voids", run.keep_voids, "Keep closed voids inside the solid");
+
+  std::vector<int> size{run.width, run.height};
+  app.add_option("--size", size, "Width and height of previews, pixels")->expected(2)->capture_default_str();
+  app.add_option("--threads", run.threads, "0: all cores")->capture_default_str();
+  app.add_option("--memory-limit", run.memory_limit_gib, "GiB; 0: half of the machine's memory")->capture_default_str();
+  app.add_flag("--dry-run", run.dry_run, "Only say what to expect: cells, triangles, memory");
+  app.add_flag("-q,--quiet", options.quiet, "No messages but errors");
+  app.add_flag("-v,--verbose", options.verbose, "Progress even when stderr is no terminal");
+
+  return outcrop::cli::run(app, argc, argv, options, [&](const outcrop::Task& task) {
+    run.border = borders.at(border);
+    run.parts = kept.at(parts);
+    if (region) run.region = outcrop::Box{{(*region)[0], (*region)[1], (*region)[2]}, {(*region)[3], (*region)[4], (*region)[5]}};
+    run.width = size[0];
+    run.height = size[1];
+    const auto notify = [&](const std::string& line) {
+      if (!options.quiet) std::cerr << "polygonize: " << line << '\n';
+    };
+    std::cout << outcrop::run_polygonize(run, notify, task);
+  });
+}
