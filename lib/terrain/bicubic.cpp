@@ -10,7 +10,7 @@
 namespace outcrop::terrain {
 namespace {
 
-constexpr double kMonotoneLimit = 3.0;   // Fritsch and Carlson 1980: slopes up to three times the smaller step.
+constexpr double kMonotoneLimit = 3.0;    // Fritsch and Carlson 1980: slopes up to three times the smaller step.
 constexpr double kRoundingSlack = 1e-12;  // Relative; evaluation in doubles errs by some 1e-15 of the largest term.
 
 /// The slope at a sample between the steps `before` and `after`.
@@ -73,14 +73,16 @@ Net control_points(const Patch& p) noexcept {
   return net;
 }
 
-/// Derivative of a cubic Bézier curve as a quadratic one, raised again to degree 3 (same curve, four points), so that both
-/// partial derivatives have points on the same net and |∇h| is bounded by the longest pair.
+/// Derivative of a cubic Bézier curve as a quadratic one, raised again to degree 3 (same curve, four points), so that
+/// both partial derivatives have points on the same net and |∇h| is bounded by the longest pair.
 std::array<double, 4> derivative_cubic(double a, double b, double c, double d) noexcept {
   const double q0 = 3.0 * (b - a), q1 = 3.0 * (c - b), q2 = 3.0 * (d - c);
   return {q0, (q0 + 2.0 * q1) / 3.0, (2.0 * q1 + q2) / 3.0, q2};
 }
 
-float below(double v) noexcept { return std::nextafter(static_cast<float>(v), -std::numeric_limits<float>::infinity()); }
+float below(double v) noexcept {
+  return std::nextafter(static_cast<float>(v), -std::numeric_limits<float>::infinity());
+}
 float above(double v) noexcept { return std::nextafter(static_cast<float>(v), std::numeric_limits<float>::infinity()); }
 
 PatchBound outward(double lo, double hi, double slope, double curvature, double magnitude, const Vec2& cell) noexcept {

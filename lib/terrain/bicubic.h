@@ -32,9 +32,9 @@ struct PatchBound {
   float curvature;  ///< ≥ the Hessian's spectral norm, 1/m.
 };
 
-/// The samples with slopes and twists limited against overshoot: a row or column that is monotone stays monotone, and at a
-/// local extremum the curve passes the sample by at most 4/27 of the smaller step beside it.
-/// Method: central differences under the limits of Fritsch and Carlson (1980), one axis at a time.
+/// The samples with slopes and twists limited against overshoot: a row or column that is monotone stays monotone, and
+/// at a local extremum the curve passes the sample by at most 4/27 of the smaller step beside it. Method: central
+/// differences under the limits of Fritsch and Carlson (1980), one axis at a time.
 [[nodiscard]] std::vector<Node> hermite_nodes(const ElevationGrid& grid);
 /// The samples alone, for bilinear patches.
 [[nodiscard]] std::vector<Node> flat_nodes(const ElevationGrid& grid);

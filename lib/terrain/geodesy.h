@@ -9,8 +9,8 @@ namespace outcrop::terrain {
 
 /// Metres a degree of longitude (x) and of latitude (y) at a latitude in degrees: the ellipsoid's radii of curvature.
 [[nodiscard]] inline Vec2 metres_per_degree(double latitude_deg) noexcept {
-  constexpr double kEquator = 6378137.0;                 // WGS 84: semi-major axis, metres.
-  constexpr double kEccentricity2 = 0.00669437999014;    // WGS 84: first eccentricity, squared.
+  constexpr double kEquator = 6378137.0;               // WGS 84: semi-major axis, metres.
+  constexpr double kEccentricity2 = 0.00669437999014;  // WGS 84: first eccentricity, squared.
   const double s = std::sin(radians(latitude_deg));
   const double w = 1.0 - kEccentricity2 * s * s;
   const double meridian = kEquator * (1.0 - kEccentricity2) / (w * std::sqrt(w));

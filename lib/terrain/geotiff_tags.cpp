@@ -1,10 +1,10 @@
 #include "geotiff_tags.h"
 
+#include <tiffio.h>
+
 #include <cstdint>
 #include <memory>
 #include <type_traits>
-
-#include <tiffio.h>
 
 namespace outcrop::terrain {
 namespace {
@@ -30,8 +30,8 @@ constexpr TIFFDataType data_type() {
   if constexpr (std::is_same_v<T, char>) return TIFF_ASCII;
 }
 
-/// The values of a tag that libtiff itself does not know: it then keeps whatever type stands in the file, so that the type
-/// has to be looked at before the memory is.
+/// The values of a tag that libtiff itself does not know: it then keeps whatever type stands in the file, so that the
+/// type has to be looked at before the memory is.
 template <class T>
 std::vector<T> tag_values(TIFF* tiff, std::uint32_t tag) {
   const TIFFField* const field = TIFFFindField(tiff, tag, TIFF_ANY);
@@ -61,7 +61,7 @@ std::optional<int> short_key(const std::vector<std::uint16_t>& directory, int ke
 
 std::optional<GeotiffTags> read_geotiff_tags(const std::filesystem::path& path) {
   const std::unique_ptr<TIFFOpenOptions, decltype(&TIFFOpenOptionsFree)> options(TIFFOpenOptionsAlloc(),
-                                                                                &TIFFOpenOptionsFree);
+                                                                                 &TIFFOpenOptionsFree);
   TIFFOpenOptionsSetErrorHandlerExtR(options.get(), stay_silent, nullptr);
   TIFFOpenOptionsSetWarningHandlerExtR(options.get(), stay_silent, nullptr);
   const std::unique_ptr<TIFF, decltype(&TIFFClose)> file(TIFFOpenExt(path.c_str(), "r", options.get()), &TIFFClose);

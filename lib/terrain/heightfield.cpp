@@ -77,6 +77,7 @@ struct Heightfield::Data {
   bool smooth;
   bool has_holes;
   Vec2 lo, hi;
+  Vec2 per_metre;  ///< Columns and rows.
   Surface ground;
   Surface holes;  ///< Signed distances; empty without holes.
 
@@ -88,10 +89,10 @@ struct Heightfield::Data {
 
   [[nodiscard]] double column_of(double x) const noexcept {
     // Written so that NaN becomes the western edge.
-    return x > lo.x ? std::min((x - lo.x) / grid.cell_x, static_cast<double>(grid.width - 1)) : 0.0;
+    return x > lo.x ? std::min((x - lo.x) * per_metre.x, static_cast<double>(grid.width - 1)) : 0.0;
   }
   [[nodiscard]] double row_of(double y) const noexcept {
-    return y < hi.y ? std::min((hi.y - y) / grid.cell_y, static_cast<double>(grid.height - 1)) : 0.0;
+    return y < hi.y ? std::min((hi.y - y) * per_metre.y, static_cast<double>(grid.height - 1)) : 0.0;
   }
   [[nodiscard]] Place place(double x, double y) const noexcept {
     const double s = column_of(x), t = row_of(y);
@@ -107,7 +108,7 @@ struct Heightfield::Data {
   /// Per-step derivatives as a gradient in the map, 0 across the border outside.
   [[nodiscard]] Sample in_map(const PatchSample& s, double x, double y) const noexcept {
     const bool inside_x = x >= lo.x && x <= hi.x, inside_y = y >= lo.y && y <= hi.y;
-    return {s.h, inside_x ? s.hu / grid.cell_x : 0.0, inside_y ? -s.hv / grid.cell_y : 0.0};
+    return {s.h, inside_x ? s.hu * per_metre.x : 0.0, inside_y ? -s.hv * per_metre.y : 0.0};
   }
   [[nodiscard]] PatchBound patch_bound(const Surface& surface, const Vec2& a, const Vec2& b) const noexcept {
     const Place north_west = place(a.x, b.y), south_east = place(b.x, a.y);
@@ -138,7 +139,8 @@ struct Heightfield::Data {
   /// |∇h| over the rectangle, from its patches and from the gradient at its centre and the curvature around it.
   [[nodiscard]] double slope_bound(const Rectangle& r, const PatchBound& patches, const Sample& centre) const noexcept {
     if (!smooth) return patches.slope;
-    const double near_centre = std::sqrt(centre.hx * centre.hx + centre.hy * centre.hy) + patches.curvature * r.radius();
+    const double near_centre =
+        std::sqrt(centre.hx * centre.hx + centre.hy * centre.hy) + patches.curvature * r.radius();
     const double rounding = (std::abs(patches.lo) + std::abs(patches.hi)) / std::min(grid.cell_x, grid.cell_y);
     return std::min<double>(patches.slope, near_centre + kRoundingSlack * (near_centre + rounding));
   }
@@ -157,8 +159,9 @@ Heightfield::Heightfield(ElevationGrid grid, Interpolation interpolation) {
   Surface ground = make_surface(grid, smooth ? terrain::hermite_nodes(grid) : terrain::flat_nodes(grid), smooth);
   const Vec2 lo = grid.origin;
   const Vec2 hi = lo + Vec2((grid.width - 1) * grid.cell_x, (grid.height - 1) * grid.cell_y);
+  const Vec2 per_metre{1.0 / grid.cell_x, 1.0 / grid.cell_y};
   data_ = std::make_shared<const Data>(
-      Data{std::move(grid), smooth, has_holes, lo, hi, std::move(ground), std::move(holes)});
+      Data{std::move(grid), smooth, has_holes, lo, hi, per_metre, std::move(ground), std::move(holes)});
 }
 
 Heightfield::Sample Heightfield::at(double x, double y) const noexcept { return data_->ground_at(x, y); }
@@ -167,8 +170,8 @@ Interval Heightfield::height_bound(const Vec2& a, const Vec2& b) const noexcept 
   const Data::Rectangle r = data_->inside(a, b);
   const PatchBound patches = data_->patch_bound(data_->ground, r.lo, r.hi);
   const Sample centre = data_->ground_at(r.centre.x, r.centre.y);
-  // Three enclosures: the control points, the Lipschitz cone over the centre, and the tangent plane there with its largest
-  // departure ½ H r². The last makes boxes much smaller than a cell sharp.
+  // Three enclosures: the control points, the Lipschitz cone over the centre, and the tangent plane there with its
+  // largest departure ½ H r². The last makes boxes much smaller than a cell sharp.
   double reach = data_->slope_bound(r, patches, centre) * r.radius();
   if (data_->smooth) {
     const double planar = std::abs(centre.hx) * r.half.x + std::abs(centre.hy) * r.half.y;

@@ -162,8 +162,10 @@ std::vector<float> hole_distances(const ElevationGrid& grid) {
   const auto at = [&](int c, int r) { return signed_distance[static_cast<std::size_t>(r) * grid.width + c]; };
   for (int r = 0; r + 1 < grid.height; ++r) {
     for (int c = 0; c + 1 < grid.width; ++c) {
-      const double dx = std::max(std::abs(at(c + 1, r) - at(c, r)), std::abs(at(c + 1, r + 1) - at(c, r + 1))) / grid.cell_x;
-      const double dy = std::max(std::abs(at(c, r + 1) - at(c, r)), std::abs(at(c + 1, r + 1) - at(c + 1, r))) / grid.cell_y;
+      const double dx =
+          std::max(std::abs(at(c + 1, r) - at(c, r)), std::abs(at(c + 1, r + 1) - at(c, r + 1))) / grid.cell_x;
+      const double dy =
+          std::max(std::abs(at(c, r + 1) - at(c, r)), std::abs(at(c + 1, r + 1) - at(c + 1, r))) / grid.cell_y;
       steepest2 = std::max(steepest2, dx * dx + dy * dy);
     }
   }

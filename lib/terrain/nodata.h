@@ -16,10 +16,10 @@ namespace outcrop::terrain {
 
 /// Signed horizontal distance of every sample to the border between NaN and data, metres, > 0 where NaN.
 ///
-/// The border runs half-way between a valid sample and an invalid one. Interpolated bilinearly it has Lipschitz constant 1
-/// (values are scaled down by at most 2 √2 where the plain distance is steeper). All samples are large and negative when
-/// none is NaN. Cost: O(samples).
-/// Method: exact Euclidean distance transform by lower envelopes of parabolas (Felzenszwalb and Huttenlocher 2012).
+/// The border runs half-way between a valid sample and an invalid one. Interpolated bilinearly it has Lipschitz
+/// constant 1 (values are scaled down by at most 2 √2 where the plain distance is steeper). All samples are large and
+/// negative when none is NaN. Cost: O(samples). Method: exact Euclidean distance transform by lower envelopes of
+/// parabolas (Felzenszwalb and Huttenlocher 2012).
 [[nodiscard]] std::vector<float> hole_distances(const ElevationGrid& grid);
 
 }  // namespace outcrop::terrain

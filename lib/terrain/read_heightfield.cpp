@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <system_error>
 #include <utility>
 
 #include "geodesy.h"
@@ -23,7 +24,7 @@ using Notes = std::vector<std::string>;
 constexpr double kLargestElevation = 1e9;  // Metres: what Heightfield accepts.
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-// Values that stand for no data by custom, without a tag: ESRI's and SRTM's, and the extremes of float that many tools write.
+// Values that stand for no data by custom, without a tag: ESRI's, SRTM's and the extremes of float that tools write.
 constexpr float kEsriNodata = -9999.0f;
 constexpr float kSrtmNodata = -32768.0f;
 constexpr float kExtreme = 1e30f;
@@ -60,10 +61,11 @@ std::optional<float> parsed_nodata(const std::string& text, Notes& notes) {
   const std::size_t first = text.find_first_not_of(" +");
   double value = 0.0;
   if (first != std::string::npos) {
-    const auto [end, error] = std::from_chars(text.data() + first, text.data() + text.size(), value);
-    // GDAL writes -1.7976931348623157e+308 and -3.4028234663852886e+38 alike; both are the lowest float in a float file.
+    const auto [rest, error] = std::from_chars(text.data() + first, text.data() + text.size(), value);
+    // GDAL writes -1.7976931348623157e+308 and -3.4028234663852886e+38 alike: in a float file both are the lowest
+    // float.
     constexpr double kLargest = std::numeric_limits<float>::max();
-    if (error == std::errc() && end != text.data() + first) return static_cast<float>(std::clamp(value, -kLargest, kLargest));
+    if (error == std::errc()) return static_cast<float>(std::clamp(value, -kLargest, kLargest));
   }
   notes.push_back("the nodata tag is no number: ignored");
   return std::nullopt;
@@ -133,15 +135,17 @@ bool place(ElevationGrid& grid, const GeotiffTags& tags, Notes& notes) {
   if (!std::isfinite(cell.x) || !std::isfinite(cell.y) || cell.x <= 0.0 || cell.y <= 0.0) return false;
   if (!std::isfinite(map.x0) || !std::isfinite(map.y0)) return false;
   if (std::abs(map.b) + std::abs(map.c) > 1e-6 * std::min(cell.x, cell.y)) {
-    notes.push_back(format("the raster is turned by %.4g degrees in its map: read as if it were north up, without its place",
-                           degrees(std::atan2(map.c, map.a))));
+    notes.push_back(
+        format("the raster is turned by %.4g degrees in its map: read as if it were north up, without its place",
+               degrees(std::atan2(map.c, map.a))));
     grid.cell_x = cell.x;
     grid.cell_y = cell.y;
     return true;
   }
   if (map.a < 0.0) mirror_columns(grid);
   if (map.d > 0.0) mirror_rows(grid);
-  const double centre = tags.raster_type == kRasterPixelIsPoint ? 0.0 : 0.5;  // Of the first sample, in raster coordinates.
+  const double centre =
+      tags.raster_type == kRasterPixelIsPoint ? 0.0 : 0.5;  // Of the first sample, in raster coordinates.
   const double west = map.x0 + map.a * (centre + (map.a < 0.0 ? grid.width - 1 : 0));
   const double south = map.y0 + map.d * (centre + (map.d < 0.0 ? grid.height - 1 : 0));
   const double north = south + (grid.height - 1) * cell.y;
@@ -151,8 +155,8 @@ bool place(ElevationGrid& grid, const GeotiffTags& tags, Notes& notes) {
   if (tags.model_type == kModelGeographic && degrees_fit) {
     const double middle = 0.5 * (south + north);
     metres = terrain::metres_per_degree(middle);
-    notes.push_back(format("degrees turned into metres at latitude %.4f: map x = longitude x %.2f, y = latitude x %.2f", middle,
-                           metres.x, metres.y));
+    notes.push_back(format("degrees turned into metres at latitude %.4f: map x = longitude x %.2f, y = latitude x %.2f",
+                           middle, metres.x, metres.y));
   } else if (tags.model_type == kModelGeographic) {
     notes.push_back("the tags say degrees, but the coordinates are too large for them: taken as metres");
   } else {
@@ -165,16 +169,40 @@ bool place(ElevationGrid& grid, const GeotiffTags& tags, Notes& notes) {
   return true;
 }
 
+std::string lower_extension(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
+}
+
+/// Any picture that can be read is taken, whatever its name; a file that cannot and has the name of something else is
+/// told which formats there are.
+Image read_elevation_image(const std::filesystem::path& path) {
+  try {
+    return read_image(path);
+  } catch (const InputError&) {
+    const std::string extension = lower_extension(path);
+    for (const char* const known : {".exr", ".tif", ".tiff", ".png"}) {
+      if (extension == known) throw;
+    }
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(path, ignored)) throw;
+    fail(path, "elevations as .exr, .tif, .png or .hgt", extension.empty() ? "none of them" : extension);
+  }
+}
+
 /// The first channel of a picture, with place and cell size where it is a GeoTIFF.
 HeightfieldFile read_raster(const std::filesystem::path& path, bool cell_given) {
-  const Image image = read_image(path);
+  Image image = read_elevation_image(path);
   HeightfieldFile file;
   ElevationGrid& grid = file.grid;
   grid.width = image.width;
   grid.height = image.height;
-  grid.elevations.resize(static_cast<std::size_t>(image.width) * image.height);
-  for (std::size_t i = 0; i < grid.elevations.size(); ++i) grid.elevations[i] = image.pixels[i * image.channels];
-  if (image.channels > 1) {
+  if (image.channels == 1) {
+    grid.elevations = std::move(image.pixels);
+  } else {
+    grid.elevations.resize(static_cast<std::size_t>(image.width) * image.height);
+    for (std::size_t i = 0; i < grid.elevations.size(); ++i) grid.elevations[i] = image.pixels[i * image.channels];
     const std::string first = image.channel_names.empty() ? "" : ", " + image.channel_names.front();
     file.notes.push_back(std::to_string(image.channels) + " channels: took the first" + first);
   }
@@ -192,18 +220,12 @@ HeightfieldFile read_raster(const std::filesystem::path& path, bool cell_given) 
   return file;
 }
 
-bool is_hgt(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension == ".hgt";
-}
-
 void check(const HeightfieldOptions& options) {
   if (options.cell_size) {
     require(std::isfinite(*options.cell_size) && *options.cell_size > 0.0, "cell_size", "> 0 m", *options.cell_size);
   }
-  require(std::isfinite(options.height_scale) && options.height_scale != 0.0, "height_scale", "a finite number other than 0",
-          options.height_scale);
+  require(std::isfinite(options.height_scale) && options.height_scale != 0.0, "height_scale",
+          "a finite number other than 0", options.height_scale);
   require(std::isfinite(options.height_offset), "height_offset", "a finite number", options.height_offset);
 }
 
@@ -211,7 +233,8 @@ void check(const HeightfieldOptions& options) {
 
 HeightfieldFile read_heightfield(const std::filesystem::path& path, const HeightfieldOptions& options) {
   check(options);
-  HeightfieldFile file = is_hgt(path) ? terrain::read_hgt(path) : read_raster(path, options.cell_size.has_value());
+  HeightfieldFile file =
+      lower_extension(path) == ".hgt" ? terrain::read_hgt(path) : read_raster(path, options.cell_size.has_value());
   ElevationGrid& grid = file.grid;
   if (grid.width < 2 || grid.height < 2) {
     fail(path, "at least 2 x 2 samples", std::to_string(grid.width) + " x " + std::to_string(grid.height));

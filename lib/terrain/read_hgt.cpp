@@ -60,7 +60,8 @@ HeightfieldFile read_hgt(const std::filesystem::path& path) {
   if (corner) {
     grid.origin = *corner * degree;
     char note[160];
-    std::snprintf(note, sizeof note, "degrees turned into metres at latitude %.4g: map x = longitude x %.2f, y = latitude x %.2f",
+    std::snprintf(note, sizeof note,
+                  "degrees turned into metres at latitude %.4g: map x = longitude x %.2f, y = latitude x %.2f",
                   latitude, degree.x, degree.y);
     file.notes.emplace_back(note);
   } else {

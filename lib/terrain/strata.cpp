@@ -11,8 +11,8 @@
 namespace outcrop {
 namespace {
 
-constexpr int kOctaves = 3;     // Beds bend at the wavelength, its half and its quarter.
-constexpr double kGain = 0.5;   // Amplitude from octave to octave.
+constexpr int kOctaves = 3;                            // Beds bend at the wavelength, its half and its quarter.
+constexpr double kGain = 0.5;                          // Amplitude from octave to octave.
 constexpr double kLargestNoise = 0.70710678118654752;  // Of gradient noise with unit gradients in two dimensions: √½.
 
 /// The way a bed dips: a horizontal unit vector.
@@ -30,7 +30,8 @@ Vec2 lattice_gradient(std::uint64_t seed, int octave, std::int64_t i, std::int64
                                                               {0, -1},
                                                               {kDiagonal, -kDiagonal}}};
   constexpr std::uint64_t kRow = 0x9E3779B97F4A7C15ull;  // Odd: (i, j) pairs of a terrain get different indices.
-  const std::uint64_t index = (static_cast<std::uint64_t>(j) * kRow + static_cast<std::uint64_t>(i)) * kOctaves + octave;
+  const std::uint64_t index =
+      (static_cast<std::uint64_t>(j) * kRow + static_cast<std::uint64_t>(i)) * kOctaves + octave;
   const auto& d = kDirections[Rng(seed, "undulation", index).next() >> 61];
   return {d[0], d[1]};
 }
@@ -44,7 +45,8 @@ double gradient_noise(std::uint64_t seed, int octave, const Vec2& p) noexcept {
     return glm::dot(lattice_gradient(seed, octave, i + a, j + b), Vec2(u - a, v - b));
   };
   const auto fade = [](double t) { return t * t * t * (t * (t * 6.0 - 15.0) + 10.0); };
-  return glm::mix(glm::mix(corner(0, 0), corner(1, 0), fade(u)), glm::mix(corner(0, 1), corner(1, 1), fade(u)), fade(v));
+  return glm::mix(glm::mix(corner(0, 0), corner(1, 0), fade(u)), glm::mix(corner(0, 1), corner(1, 1), fade(u)),
+                  fade(v));
 }
 
 /// Octaves of it, scaled so that |n| ≤ 1.

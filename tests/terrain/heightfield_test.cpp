@@ -156,7 +156,8 @@ TEST(Heightfield, BoundsContainHeightAndSlopeInAnyRectangle) {
           const double x = k == 0 ? lo.x : k == 1 ? hi.x : rng.uniform(lo.x, hi.x);
           const double y = k == 0 ? lo.y : k == 1 ? hi.y : rng.uniform(lo.y, hi.y);
           const Heightfield::Sample s = heightfield.at(x, y);
-          ASSERT_TRUE(heights.contains(s.h)) << heights.lo << ' ' << heights.hi << " misses " << s.h << ", size " << size;
+          ASSERT_TRUE(heights.contains(s.h))
+              << heights.lo << ' ' << heights.hi << " misses " << s.h << ", size " << size;
           ASSERT_LE(std::hypot(s.hx, s.hy), slope) << "size " << size;
         }
       }
@@ -190,9 +191,9 @@ TEST(Heightfield, BoundsAreSharp) {
 TEST(Heightfield, IsFiniteForSamplesOfABillionMetres) {
   for (const Interpolation interpolation : kBoth) {
     Rng rng(1, "huge");
-    const Heightfield heightfield(grid_of(8, 8, {0.001, 0.001}, {0.0, 0.0},
-                                          [&](double, double) { return rng.uniform() < 0.5 ? -1e9 : 1e9; }),
-                                  interpolation);
+    const Heightfield heightfield(
+        grid_of(8, 8, {0.001, 0.001}, {0.0, 0.0}, [&](double, double) { return rng.uniform() < 0.5 ? -1e9 : 1e9; }),
+        interpolation);
     EXPECT_TRUE(std::isfinite(heightfield.slope_bound(heightfield.lo(), heightfield.hi())));
     const double nan = std::nan("");
     for (const Vec2 p : {Vec2(0.0031, 0.0042), Vec2(-1e9, 1e9), Vec2(1e300, -1e300), Vec2(nan, nan)}) {

@@ -106,7 +106,8 @@ TEST(Nodata, HoleDistanceIsLipschitzAndBounded) {
         const double qx = x + rng.uniform(-reach, reach), qy = y + rng.uniform(-reach, reach);
         const double p = heightfield.hole_distance(x, y), q = heightfield.hole_distance(qx, qy);
         ASSERT_LE(std::abs(p - q), std::hypot(qx - x, qy - y) + 1e-9);
-        const Interval bound = heightfield.hole_bound({std::min(x, qx), std::min(y, qy)}, {std::max(x, qx), std::max(y, qy)});
+        const Interval bound =
+            heightfield.hole_bound({std::min(x, qx), std::min(y, qy)}, {std::max(x, qx), std::max(y, qy)});
         ASSERT_TRUE(bound.contains(p) && bound.contains(q) && bound.contains(heightfield.hole_distance(x, qy)));
       }
     });

@@ -1,6 +1,8 @@
 #include "outcrop/terrain/read_heightfield.h"
 
+#include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
+#include <tiffio.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,9 +11,6 @@
 #include <fstream>
 #include <string>
 #include <vector>
-
-#include <OpenImageIO/imageio.h>
-#include <tiffio.h>
 
 #include "outcrop/core/error.h"
 #include "outcrop/core/image.h"
@@ -111,7 +110,8 @@ void write_geotiff(const fs::path& path, int width, int height, const std::vecto
   doubles(34264, tags.transformation);
   std::vector<std::uint16_t> directory{1, 1, 0, static_cast<std::uint16_t>(tags.keys.size() / 2)};
   for (std::size_t i = 0; i + 1 < tags.keys.size(); i += 2) {
-    for (const int v : {int{tags.keys[i]}, 0, 1, int{tags.keys[i + 1]}}) directory.push_back(static_cast<std::uint16_t>(v));
+    for (const int v : {int{tags.keys[i]}, 0, 1, int{tags.keys[i + 1]}})
+      directory.push_back(static_cast<std::uint16_t>(v));
   }
   if (!tags.keys.empty()) TIFFSetField(tiff, 34735, static_cast<int>(directory.size()), directory.data());
   if (!tags.nodata.empty()) TIFFSetField(tiff, 42113, tags.nodata.c_str());
@@ -166,7 +166,8 @@ TEST_F(ReadHeightfield, EightBitColourTakesTheFirstChannelAndSaysSo) {
 
 TEST_F(ReadHeightfield, AlphaDoesNotScaleHeights) {
   write_picture<std::uint16_t>(file("h.png"), 2, 2, 4,
-                               {100, 0, 0, 6000, 200, 0, 0, 6000, 300, 0, 0, 0, 400, 0, 0, 65535}, OIIO::TypeDesc::UINT16);
+                               {100, 0, 0, 6000, 200, 0, 0, 6000, 300, 0, 0, 0, 400, 0, 0, 65535},
+                               OIIO::TypeDesc::UINT16);
   EXPECT_EQ(read_heightfield(file("h.png")).grid.elevations, (std::vector<float>{100, 200, 300, 400}));
 }
 
@@ -258,9 +259,9 @@ TEST_F(ReadHeightfield, NodataTagsAndCustomsBecomeNan) {
 }
 
 TEST_F(ReadHeightfield, UselessGeotiffTagsAreIgnored) {
-  for (const Tags& tags : {Tags{.scale = {0, 0, 0}, .tie_point = {0, 0, 0, 0, 0, 0}}, Tags{.scale = {5}},
-                           Tags{.scale = {NAN, 1, 0}, .tie_point = {0, 0, 0, 0, 0, 0}},
-                           Tags{.tie_point = {0, 0, 0, 5, 5, 0}}}) {
+  for (const Tags& tags :
+       {Tags{.scale = {0, 0, 0}, .tie_point = {0, 0, 0, 0, 0, 0}}, Tags{.scale = {5}},
+        Tags{.scale = {NAN, 1, 0}, .tie_point = {0, 0, 0, 0, 0, 0}}, Tags{.tie_point = {0, 0, 0, 5, 5, 0}}}) {
     write_geotiff(file("h.tif"), 3, 2, kSamples, tags);
     const HeightfieldFile read = read_heightfield(file("h.tif"));
     EXPECT_EQ(read.grid.cell_x, 1.0);
@@ -309,7 +310,8 @@ TEST_F(ReadHeightfield, UnusableFilesAreRefusedInOneLine) {
   write_bytes(file("text.png"), "no picture at all, but text");
   refusal(file("text.png"));
   write_bytes(file("grid.asc"), "ncols 2\nnrows 2\n1 2\n3 4\n");
-  refusal(file("grid.asc"));
+  EXPECT_EQ(refusal(file("grid.asc")),
+            file("grid.asc").string() + ": expected elevations as .exr, .tif, .png or .hgt, got .asc");
 
   write_geotiff(file("whole.tif"), 3, 200, std::vector<float>(600, 1.0f), {});
   write_bytes(file("half.tif"), read_bytes(file("whole.tif")).substr(0, 1000));

@@ -20,9 +20,9 @@ struct Expected {
   const char* file;
   int width, height;
   double cell_x, cell_y;
-  double lowest, highest;      ///< Metres, to 0.1 m.
-  double valid;                ///< Share of samples.
-  double steepest_deg;         ///< Central differences at cell size, cells beside nodata left out; 0: not told.
+  double lowest, highest;  ///< Metres, to 0.1 m.
+  double valid;            ///< Share of samples.
+  double steepest_deg;     ///< Central differences at cell size, cells beside nodata left out; 0: not told.
 };
 
 class RealData : public ::testing::TestWithParam<Expected> {
@@ -87,21 +87,22 @@ TEST_P(RealData, TheSurfacePassesThroughEverySample) {
 
 INSTANTIATE_TEST_SUITE_P(
     Dem, RealData,
-    ::testing::Values(
-        Expected{"seacliff_ca_aoi1/aoi1_dem.tif", 736, 170, 1, 1, 0.3, 50.5, 0.668, 82.7},
-        Expected{"seacliff_ca_aoi1/seacliff_ca_aoi1_f32.tif", 736, 170, 1, 1, 0.3, 50.5, 0.668, 82.7},
-        Expected{"seacliff_ca_aoi4/aoi4_dem.tif", 427, 721, 1, 1, -0.2, 105.9, 0.594, 83.9},
-        Expected{"seacliff_ca_aoi7/aoi7_dem.tif", 937, 859, 1, 1, -0.8, 86.3, 0.461, 87.9},
-        Expected{"alps_alr_5m/alps_alr_5m_f32.tif", 417, 915, 5, 5, 566.1, 2452.3, 0.694, 82.3},
-        Expected{"alps_gar_5m/alps_gar_5m_f32.tif", 520, 387, 4.998, 4.998, 1234.0, 2672.2, 0.588, 85.7},
-        Expected{"fluchthorn_10m/fluchthorn_10m_f32.tif", 300, 220, 10, 10, 2330.7, 3395.0, 1.0, 78.3},
-        Expected{"edinburgh_crags_2p5m/holyroodpark.tif", 815, 563, 2.5, 2.5, 33.8, 250.8, 1.0, 83.2},
-        Expected{"zion_srtm90/srtm.tif", 465, 457, 73.771, 92.611, 1024.0, 2892.0, 1.0, 71.5},
-        Expected{"sthelens_30m/sthelens_30m_f32.tif", 327, 468, 30, 30, 682.0, 2543.0, 0.973, 69.2},
-        Expected{"chantsura_scree_5cm/chantsura_scree_5cm_f32.tif", 94, 154, 0.05, 0.05, 2372.1, 2380.9, 1.0, 87.6}),
+    ::testing::Values(Expected{"seacliff_ca_aoi1/aoi1_dem.tif", 736, 170, 1, 1, 0.3, 50.5, 0.668, 82.7},
+                      Expected{"seacliff_ca_aoi1/seacliff_ca_aoi1_f32.tif", 736, 170, 1, 1, 0.3, 50.5, 0.668, 82.7},
+                      Expected{"seacliff_ca_aoi4/aoi4_dem.tif", 427, 721, 1, 1, -0.2, 105.9, 0.594, 83.9},
+                      Expected{"seacliff_ca_aoi7/aoi7_dem.tif", 937, 859, 1, 1, -0.8, 86.3, 0.461, 87.9},
+                      Expected{"alps_alr_5m/alps_alr_5m_f32.tif", 417, 915, 5, 5, 566.1, 2452.3, 0.694, 82.3},
+                      Expected{"alps_gar_5m/alps_gar_5m_f32.tif", 520, 387, 4.998, 4.998, 1234.0, 2672.2, 0.588, 85.7},
+                      Expected{"fluchthorn_10m/fluchthorn_10m_f32.tif", 300, 220, 10, 10, 2330.7, 3395.0, 1.0, 78.3},
+                      Expected{"edinburgh_crags_2p5m/holyroodpark.tif", 815, 563, 2.5, 2.5, 33.8, 250.8, 1.0, 83.2},
+                      Expected{"zion_srtm90/srtm.tif", 465, 457, 73.771, 92.611, 1024.0, 2892.0, 1.0, 71.5},
+                      Expected{"sthelens_30m/sthelens_30m_f32.tif", 327, 468, 30, 30, 682.0, 2543.0, 0.973, 69.2},
+                      Expected{"chantsura_scree_5cm/chantsura_scree_5cm_f32.tif", 94, 154, 0.05, 0.05, 2372.1, 2380.9,
+                               1.0, 87.6}),
     [](const auto& test) {
       std::string name = fs::path(test.param.file).stem().string();
-      std::replace_if(name.begin(), name.end(), [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); }, '_');
+      std::replace_if(
+          name.begin(), name.end(), [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); }, '_');
       return name;
     });
 

@@ -16,7 +16,8 @@ using test::holed_grid;
 using test::rough_grid;
 
 Box region_of(const Heightfield& heightfield) {
-  return Box{{heightfield.lo().x, heightfield.lo().y, -10.0}, {heightfield.hi().x, heightfield.hi().y, 60.0}}.grown(5.0);
+  return Box{{heightfield.lo().x, heightfield.lo().y, -10.0}, {heightfield.hi().x, heightfield.hi().y, 60.0}}.grown(
+      5.0);
 }
 
 TEST(TerrainField, KeepsTheFieldContract) {
@@ -33,6 +34,26 @@ TEST(TerrainField, KeepsTheFieldContractAtHoles) {
     for (const Interpolation interpolation : {Interpolation::Smooth, Interpolation::Bilinear}) {
       const Heightfield heightfield(holed_grid(2, {2.0, 3.0}, {10.0, 20.0}), interpolation);
       test::check_field_contract(*std::make_shared<TerrainField>(heightfield, nodata), region_of(heightfield));
+    }
+  }
+}
+
+TEST(TerrainField, LatticesEqualTheirSinglePoints) {
+  // Batches whose positions return layer by layer, column by column, or only almost.
+  const Heightfield heightfield(holed_grid(5, {2.0, 3.0}, {0.0, 0.0}));
+  const auto field = std::make_shared<TerrainField>(heightfield);
+  for (const int layer : {1, 9, 81, 255, 256, 300}) {
+    test::PointList points;
+    Rng rng(1, "lattice", static_cast<std::uint64_t>(layer));
+    for (int i = 0; i < 900; ++i) {
+      const int k = i % layer;
+      const double stray = rng.uniform() < 0.05 ? 0.3 : 0.0;
+      points.push_back({1.1 * (k % 20) + stray, 1.7 * (k / 20), 3.0 * (i / layer) - 5.0});
+    }
+    const test::FieldAnswers batch(*field, points.view());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      ASSERT_EQ(batch.values[i], field->value(points[i])) << "layer of " << layer << ", point " << i;
+      ASSERT_EQ(batch.gradients[i], field->gradient(points[i])) << "layer of " << layer << ", point " << i;
     }
   }
 }

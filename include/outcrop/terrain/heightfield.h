@@ -30,22 +30,25 @@ enum class Interpolation { Smooth, Bilinear };
 /// What to do where there is no data: leave the ground out, or fill it smoothly from its rim.
 enum class NodataPolicy { Hole, Fill };
 
-/// An elevation function h(x, y) in map coordinates, defined on the rectangle between the outermost samples and continued
-/// as a constant beyond it.
+/// An elevation function h(x, y) in map coordinates, defined on the rectangle between the outermost samples and
+/// continued as a constant beyond it.
 ///
-/// Smooth: bicubic Hermite with limited slopes, C¹, passes through the samples, overshoot bounded (see heightfield.cpp).
+/// Smooth: bicubic Hermite with limited slopes, C¹ inside the rectangle. It passes through the samples; where they rise
+/// along a row or column so does it, and at a local extremum it passes the sample by at most 4/27 of the smaller step.
+/// Memory: 42 bytes a sample, 21 + 16 more where there are holes.
 class Heightfield {
  public:
   struct Sample {
     double h, hx, hy;
   };
 
-  /// NaN samples are filled from the nearest valid ones for interpolation; `valid` remembers them.
+  /// NaN samples are filled by a membrane hung on the rims of the data, for interpolation; hole_distance remembers them.
   /// @throws ParameterError when a bound of ElevationGrid is broken or no sample is valid.
   explicit Heightfield(ElevationGrid grid, Interpolation interpolation = Interpolation::Smooth);
 
   [[nodiscard]] Sample at(double x, double y) const noexcept;
-  /// Contains h over [lo, hi]. Cost: O(log) of the rectangle's cells, by a min-max pyramid over patch control points.
+  /// Contains h over [lo, hi]. Cost: O(log) of the rectangle's cells, by a min-max pyramid over patch control points;
+  /// within a cell sharpened by the tangent plane and the patch's largest curvature.
   [[nodiscard]] Interval height_bound(const Vec2& lo, const Vec2& hi) const noexcept;
   /// ≥ |∇h| over [lo, hi]; same cost.
   [[nodiscard]] double slope_bound(const Vec2& lo, const Vec2& hi) const noexcept;
@@ -56,6 +59,7 @@ class Heightfield {
   [[nodiscard]] const ElevationGrid& grid() const noexcept;  ///< With NaN samples filled.
   [[nodiscard]] bool has_holes() const noexcept;
   /// Signed horizontal distance (not exact, Lipschitz 1) to the nodata area: > 0 in holes, < 0 on data; C⁰, bilinear.
+  /// 0 half-way between a valid sample and an invalid one. Without holes a large negative constant.
   [[nodiscard]] double hole_distance(double x, double y) const noexcept;
   /// The same with its gradient; `h` is the distance.
   [[nodiscard]] Sample hole_at(double x, double y) const noexcept;
