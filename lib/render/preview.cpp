@@ -101,7 +101,7 @@ Pixel trace_pixel(const View& view, int x, int y, RayCounters& counters) {
                   .spread = view.spread};
     const std::optional<RayHit> hit = view.tracer.closest(ray, counters);
     if (!hit) {
-      pixel.background += render::sky_radiance(ray.direction, view.sun);
+      pixel.background += render::backdrop(ray.direction);
       continue;
     }
     const double width = ray.width(hit->t);

@@ -10,6 +10,8 @@ const Vec3f kSun{3.1f, 2.75f, 2.25f};
 const Vec3f kZenith{0.34f, 0.52f, 0.86f};
 const Vec3f kHorizon{0.86f, 0.93f, 1.02f};
 const Vec3f kGroundAlbedo{0.16f, 0.155f, 0.14f};
+const Vec3f kHaze{0.40f, 0.46f, 0.54f};
+constexpr float kBackdrop = 1.5f;         // Brighter than as a light, so that silhouettes stand out.
 constexpr float kRockAlbedo = 0.35f;      // Of an average rock, for light that it passes on.
 constexpr float kRockInSun = 0.2f;        // Share of the sun that such rock gets: most of it lies in shade.
 constexpr float kRockInSky = 0.3f;        // The same of the sky.
@@ -35,6 +37,12 @@ Vec3f sky_radiance(const Vec3& direction, const Vec3& sun) {
   const float sun_height = static_cast<float>(std::max(sun.z, 0.0));
   const Vec3f ground = kGroundAlbedo * (sun_height * kSun + 0.5f * (kHorizon + kZenith));
   return glm::mix(kHorizon, ground, std::min(1.0f, std::sqrt(-4.0f * up)));
+}
+
+Vec3f backdrop(const Vec3& direction) {
+  const float up = static_cast<float>(direction.z);
+  if (up >= 0.0f) return kBackdrop * glm::mix(kHorizon, kZenith, std::sqrt(up));
+  return kBackdrop * glm::mix(kHorizon, kHaze, std::min(1.0f, std::sqrt(-1.5f * up)));
 }
 
 Vec3f rock_radiance(const Vec3& sun) {

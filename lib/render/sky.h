@@ -12,6 +12,9 @@ namespace outcrop::render {
 /// @param sun  Unit, towards the sun: lights the ground.
 [[nodiscard]] Vec3f sky_radiance(const Vec3& direction, const Vec3& sun);
 
+/// What stands behind the rock in a picture: the sky, and haze below the horizon rather than ground.
+[[nodiscard]] Vec3f backdrop(const Vec3& direction);
+
 /// Radiance of rock that is seen from rock nearby: what an occluded ambient ray brings back instead of sky.
 [[nodiscard]] Vec3f rock_radiance(const Vec3& sun);
 
