@@ -17,12 +17,18 @@ struct MeshMetadata {
 };
 
 /// Chooses the format by the extension. Positions are written relative to mesh.origin.
-/// @throws ParameterError naming the known extensions; SystemError.
+///
+/// .ply: float x y z, nx ny nz, uchar red green blue (sRGB; when there are colours) and uchar material (ushort past 255),
+/// faces of uint. .obj: v, vn, and usemtl by the label that most corners of a face have. .stl: positions alone.
+/// @throws ParameterError naming the known extensions; SystemError; Cancelled.
 void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh, const MeshMetadata& metadata = {},
                 const Task& task = {});
 
-/// Reads .ply (binary or text), .obj and .stl triangles (polygons are fanned); for polygonize's mesh input.
-/// @throws InputError.
+/// Reads .ply and .stl (binary or text) and .obj; polygons are fanned, normals and materials come from .ply alone.
+///
+/// Corners of .stl triangles are welded where their coordinates are equal. A mesh far from its file's origin, as in map
+/// coordinates, gets an origin of its own; else mesh.origin is 0.
+/// @throws InputError naming the line of a text, the element of a binary file.
 [[nodiscard]] TriangleMesh read_mesh(const std::filesystem::path& path);
 
 }  // namespace outcrop
