@@ -28,11 +28,11 @@ LEVELS = 4096  # grey levels written: finer ones would be 30 micrometres at an a
 V, U = np.meshgrid(1 - (np.arange(SIZE) + 0.5) / SIZE, (np.arange(SIZE) + 0.5) / SIZE, indexing="ij")
 
 
-# ---- periodic building blocks ------------------------------------------------------------------------------------
+# ---- periodic building blocks ----
 
 
 def noise(rng, low, high, slope=2.0, stretch_u=1.0, stretch_v=1.0):
-    """Gaussian noise of unit deviation, periodic, of frequencies low to high (cycles an image), amplitude ~ f^-slope/2."""
+    """Periodic noise of unit deviation: frequencies low to high (cycles an image), amplitude as f^(-slope/2)."""
     f = np.fft.fftfreq(SIZE, 1 / SIZE)
     fr = np.hypot(f[None, :] * stretch_u, f[:, None] * stretch_v)
     amplitude = np.where((fr >= low) & (fr <= high), np.maximum(fr, 1e-9) ** (-slope / 2), 0.0)
@@ -107,7 +107,7 @@ def finish(h, mean, high=97.0):
     return np.clip(blur(t, 0.7), 0, 1)
 
 
-# ---- the five ------------------------------------------------------------------------------------------------------
+# ---- the five ----
 
 
 def layered(rng):
@@ -127,8 +127,7 @@ def layered(rng):
         size = tops[k] - bottoms[k]
         # upright joints, spaced in proportion to the bed's thickness; chunks between them stand out or have fallen
         count = max(3, int(1 / (size * rng.uniform(1.6, 4.5))))
-        joints = np.sort((np.arange(count) + rng.uniform(-0.42, 0.42, count)) / count + rng.random()) % 1.0
-        joints = np.sort(joints)
+        joints = np.sort(((np.arange(count) + rng.uniform(-0.42, 0.42, count)) / count + rng.random()) % 1.0)
         u = (U[inside] + 0.0045 * wobble[inside] + rng.uniform(-0.25, 0.25) * (v[inside] - bottoms[k])) % 1.0
         chunk = np.searchsorted(joints, u) % count
         heights = rng.normal(0, 0.10, count) - np.where(rng.random(count) < 0.16, rng.uniform(0.15, 0.4, count), 0)
@@ -142,8 +141,7 @@ def layered(rng):
         parting = rng.uniform(0.08, 0.45)
         edge[inside] = 1 - parting * (1 - smoothstep(0.0015, 0.008, across))
     h = h + (edge - 1) * (0.75 + 0.25 * np.tanh(noise(rng, 2, 12, 1.5)))
-    laminae = noise(rng, 20, 140, 1.0, stretch_u=0.12, stretch_v=1.0)
-    laminae = noise(rng, 25, 120, 1.2, stretch_u=6.0, stretch_v=1.0) + 0.2 * laminae
+    laminae = noise(rng, 25, 120, 1.2, stretch_u=6.0, stretch_v=1.0)
     h += 0.035 * laminae * (1.2 - hard[bed]) + 0.02 * noise(rng, 20, 110, 1.6) + 0.03 * noise(rng, 2, 20, 2.5)
     return finish(blur(h, 0.8), 0.72)
 
@@ -214,7 +212,8 @@ def cracked(rng):
         gap = np.where(second < 5, second - best, 9.0) / 2  # about the distance to the crack
         pair = (np.minimum(own, other) * 7919 + np.maximum(own, other) * 104729 + level * 15485863) % 65521 / 65521
         strength = np.where(pair < open_share, 1.0, 0.16 + 0.3 * ((pair * 37) % 1))
-        strength *= 0.35 + 0.65 * smoothstep(-1.1, 0.9, fade + 0.5 * (pair - 0.5)) if level else 0.8 + 0.2 * np.tanh(fade)
+        young = 0.35 + 0.65 * smoothstep(-1.1, 0.9, fade + 0.5 * (pair - 0.5))
+        strength *= young if level else 0.8 + 0.2 * np.tanh(fade)
         w = width * (0.45 + 0.75 * strength)
         tilt = rng.normal(0, 1, (count, 2)) * step * 2.2
         height = rng.normal(0, step, count)
@@ -268,7 +267,8 @@ def rough(rng):
         cols = np.arange(int((p[0] - 0.075) * SIZE), int((p[0] + 0.075) * SIZE)) % SIZE
         rows = np.arange(int((1 - p[1] - 0.075) * SIZE), int((1 - p[1] + 0.075) * SIZE)) % SIZE
         window = np.ix_(rows, cols)
-        d = np.hypot(wrap(U[window] + 0.4 * warp_u[window] - p[0]), 1.35 * wrap(V[window] + 0.4 * warp_v[window] - p[1]))
+        x, y = U[window] + 0.4 * warp_u[window] - p[0], V[window] + 0.4 * warp_v[window] - p[1]
+        d = np.hypot(wrap(x), 1.35 * wrap(y))
         near = d < f1[window]
         f1[window] = np.where(near, d, f1[window])
         value[window] = np.where(near, level - 30 * d, value[window])
@@ -313,7 +313,7 @@ def fluted(rng):
     return finish(blur(h, 0.8), 0.68, 98.0)
 
 
-# ---- files -----------------------------------------------------------------------------------------------------------
+# ---- files ----
 
 
 def write_png(path, h):
