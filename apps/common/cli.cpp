@@ -1,0 +1,215 @@
+#include "cli.h"
+
+#include <pthread.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <cmath>
+#include <csignal>
+#include <cstdlib>
+#include <exception>
+#include <iostream>
+#include <memory>
+#include <new>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "outcrop/core/error.h"
+#include "progress_line.h"
+
+namespace outcrop::cli {
+
+namespace {
+
+constexpr int kDone = 0;
+constexpr int kOurFault = 1;
+constexpr int kCallersFault = 2;
+constexpr int kInterrupted = 130;
+
+// Waits for SIGINT and SIGTERM on a thread of its own, since a signal handler may not touch a stop source.
+class Interrupts {
+ public:
+  Interrupts() {
+    sigemptyset(&signals_);
+    sigaddset(&signals_, SIGINT);
+    sigaddset(&signals_, SIGTERM);
+    pthread_sigmask(SIG_BLOCK, &signals_, nullptr);  // inherited by every thread that starts later
+    watcher_ = std::thread([this] { watch(); });
+  }
+  ~Interrupts() {
+    finished_ = true;
+    pthread_kill(watcher_.native_handle(), SIGTERM);
+    watcher_.join();
+  }
+  Interrupts(const Interrupts&) = delete;
+  Interrupts& operator=(const Interrupts&) = delete;
+
+  [[nodiscard]] std::stop_token token() const { return source_.get_token(); }
+
+ private:
+  void watch() {
+    for (;;) {
+      int signal = 0;
+      if (sigwait(&signals_, &signal) != 0) continue;
+      if (finished_) return;
+      if (source_.request_stop()) continue;
+      std::signal(signal, SIG_DFL);  // the second time: at once
+      pthread_sigmask(SIG_UNBLOCK, &signals_, nullptr);
+      std::raise(signal);
+    }
+  }
+
+  sigset_t signals_{};
+  std::stop_source source_;
+  std::atomic<bool> finished_ = false;
+  std::thread watcher_;
+};
+
+std::string one_line(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
+std::vector<std::string> option_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* const option : app.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back(std::string("--").append(name));
+    for (const std::string& name : option->get_snames()) names.push_back(std::string("-").append(name));
+  }
+  return names;
+}
+
+// What is wrong with the first argument that nothing took, or "".
+std::string about_extras(const CLI::App& app) {
+  const std::vector<std::string> extras = app.remaining();
+  const auto option = std::find_if(extras.begin(), extras.end(), [](const auto& word) { return word.starts_with("-"); });
+  if (option == extras.end()) return extras.empty() ? "" : "unexpected argument \"" + extras.front() + "\"";
+  const std::string word = option->substr(0, option->find('='));
+  const std::vector<std::string> names = option_names(app);
+  const std::vector<std::string_view> known(names.begin(), names.end());
+  const std::string_view nearest = word.size() > 2 ? nearest_name(word, known.data(), known.size()) : "";
+  return "unknown option " + word + (nearest.empty() ? "" : "; did you mean " + std::string(nearest) + "?");
+}
+
+std::string expected_by(const CLI::Option* option) {
+  const std::string type = option ? option->get_type_name() : "";
+  if (type.starts_with("FLOAT")) return "a number";
+  if (type.starts_with("UINT")) return "an integer that is not negative";
+  if (type.starts_with("INT")) return "an integer";
+  return "another value";
+}
+
+std::string about(const CLI::App& app, const CLI::ParseError& error) {
+  if (const std::string extras = about_extras(app); !extras.empty()) return extras;
+  std::string text = error.what();
+  constexpr std::string_view kUnconverted = "Could not convert: ";
+  if (text.starts_with(kUnconverted)) {
+    const std::size_t equals = text.find(" = ");
+    const std::string name = text.substr(kUnconverted.size(), equals - kUnconverted.size());
+    const std::string value = equals == text.npos ? "" : text.substr(equals + 3);
+    return name + ": expected " + expected_by(app.get_option_no_throw(name)) + ", got \"" + value + "\"";
+  }
+  // "--region: 4 required FLOAT missing", "--cell-size: At Most 1 required but received 2"
+  const std::string name = text.substr(0, text.find(": "));
+  const CLI::Option* const option = app.get_option_no_throw(name);
+  if (option && error.get_name() == "ArgumentMismatch") {
+    const int count = option->get_items_expected_min();
+    const bool missing = text.ends_with(" missing");
+    return name + ": expected " + (count == 1 ? "one value" : std::to_string(count) + " values") + ", got " +
+           (!missing ? std::to_string(option->results().size()) : count == 1 ? "none" : "fewer");
+  }
+  return text;
+}
+
+// NaN and infinity are no numbers to compute with, and CLI11 wraps negative integers and cuts long ones.
+std::string about_number(const std::string& type, const std::string& text) {
+  char* end = nullptr;
+  errno = 0;
+  if (type.find("FLOAT") != type.npos) {
+    const double value = std::strtod(text.c_str(), &end);
+    // What is no number at all fails later, with its own message.
+    return *end || std::isfinite(value) ? "" : "expected a finite number, got " + text;
+  }
+  const bool negative = text.starts_with("-");
+  if (type.starts_with("UINT")) {
+    (void)std::strtoull(text.c_str(), &end, 10);
+    if (!*end && (negative || errno == ERANGE)) return "expected an integer in [0, 2^64), got " + text;
+  }
+  return "";
+}
+
+void check_numbers(CLI::App& app) {
+  for (CLI::Option* const option : app.get_options(nullptr)) {
+    const std::string type = option->get_type_name();
+    option->check(CLI::Validator([type](std::string& text) { return about_number(type, text); }, ""));
+  }
+}
+
+// The exit code for the exception in flight, and its message.
+std::pair<int, std::string> explained() {
+  try {
+    throw;
+  } catch (const InputError& e) {
+    return {kCallersFault, e.what()};
+  } catch (const ParameterError& e) {
+    return {kCallersFault, e.what()};
+  } catch (const Cancelled&) {
+    return {kInterrupted, "interrupted; nothing was written"};
+  } catch (const std::bad_alloc&) {
+    return {kOurFault, "out of memory"};
+  } catch (const SystemError& e) {
+    return {kOurFault, e.what()};
+  } catch (const std::exception& e) {
+    return {kOurFault, std::string("internal error: ") + e.what()};
+  } catch (...) {
+    return {kOurFault, "internal error of unknown kind"};
+  }
+}
+
+}  // namespace
+
+int run(CLI::App& app, int argc, char** argv, const Options& options, const std::function<void(const Task&)>& body) {
+  std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is an error of write, like a full disk
+  const auto fail = [&](int code, const std::string& message) {
+    std::cerr << app.get_name() << ": " << one_line(message) << std::endl;
+    return code;
+  };
+  app.set_version_flag("--version", app.get_name() + " " OUTCROP_VERSION, "Print the version and exit");
+  try {
+    check_numbers(app);
+    app.parse(argc, argv);
+  } catch (const CLI::CallForVersion& version) {
+    std::cout << version.what() << std::endl;
+    return kDone;
+  } catch (const CLI::CallForHelp&) {
+    std::cout << app.help() << std::flush;
+    return kDone;
+  } catch (const CLI::ParseError& error) {
+    return fail(kCallersFault, about(app, error) + "; see " + app.get_name() + " --help");
+  }
+
+  std::pair<int, std::string> outcome{kDone, ""};
+  {
+    const Interrupts interrupts;
+    const bool terminal = ::isatty(STDERR_FILENO) == 1;
+    const auto progress = (terminal || options.verbose) && !options.quiet
+                              ? std::make_unique<ProgressLine>(app.get_name(), terminal)
+                              : nullptr;
+    try {
+      body({.stop = interrupts.token(), .progress = progress.get()});
+      if (!std::cout.flush()) throw SystemError("standard output: cannot be written");
+    } catch (...) {
+      outcome = explained();
+    }
+  }
+  return outcome.first == kDone ? kDone : fail(outcome.first, outcome.second);
+}
+
+}  // namespace outcrop::cli
