@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "implicit/field_contract.h"
+#include "outcrop/core/parallel.h"
 #include "outcrop/terrain/heightfield.h"
 #include "terrain_samples.h"
 
@@ -124,6 +125,23 @@ TEST(Nodata, TheRimRunsHalfWayBetweenDataAndHole) {
     EXPECT_NEAR(heightfield.hole_distance(4.5 * cell.x, 3.1), 0.0, 1e-5);
     EXPECT_LT(heightfield.hole_distance(4.4 * cell.x, 3.1), 0.0);
     EXPECT_GT(heightfield.hole_distance(4.6 * cell.x, 3.1), 0.0);
+  }
+}
+
+TEST(Nodata, AnyNumberOfThreadsGivesTheSameSurface) {
+  const ElevationGrid grid = moth_eaten_grid(3, {1.0, 3.0});
+  const auto built_with = [&](int threads) {
+    const ThreadLimit limit(threads);
+    return Heightfield(grid);
+  };
+  const Heightfield one = built_with(1), four = built_with(4);
+  Rng rng(3, "positions");
+  for (int i = 0; i < 500; ++i) {
+    const double x = rng.uniform(one.lo().x, one.hi().x);
+    const double y = rng.uniform(one.lo().y, one.hi().y);
+    ASSERT_EQ(one.at(x, y).h, four.at(x, y).h);
+    ASSERT_EQ(one.hole_distance(x, y), four.hole_distance(x, y));
+    ASSERT_EQ(one.slope_bound({x, y}, {x + 3.0, y + 3.0}), four.slope_bound({x, y}, {x + 3.0, y + 3.0}));
   }
 }
 

@@ -12,13 +12,13 @@ namespace outcrop {
 
 /// Elevation samples as they come from a file: row 0 is the north edge.
 struct ElevationGrid {
-  int width = 0;                      ///< Samples west to east, ≥ 2.
-  int height = 0;                     ///< Samples north to south, ≥ 2.
-  double cell_x = 1.0;                ///< Metres between samples, > 0.
+  int width = 0;        ///< Samples west to east, ≥ 2.
+  int height = 0;       ///< Samples north to south, ≥ 2.
+  double cell_x = 1.0;  ///< Metres between samples, > 0.
   double cell_y = 1.0;
-  Vec2 origin{0.0};                   ///< Map position of the south-west sample's centre.
-  bool georeferenced = false;         ///< `origin` came from the file.
-  std::vector<float> elevations;      ///< width · height metres, row-major from the north; NaN where there is no data.
+  Vec2 origin{0.0};               ///< Map position of the south-west sample's centre.
+  bool georeferenced = false;     ///< `origin` came from the file.
+  std::vector<float> elevations;  ///< width · height metres, row-major from the north; NaN where there is no data.
 
   [[nodiscard]] float at(int column, int row) const noexcept {
     return elevations[static_cast<std::size_t>(row) * width + column];
@@ -42,7 +42,8 @@ class Heightfield {
     double h, hx, hy;
   };
 
-  /// NaN samples are filled by a membrane hung on the rims of the data, for interpolation; hole_distance remembers them.
+  /// NaN samples are filled by a membrane hung on the rims of the data, for interpolation; hole_distance remembers
+  /// them.
   /// @throws ParameterError when a bound of ElevationGrid is broken or no sample is valid.
   explicit Heightfield(ElevationGrid grid, Interpolation interpolation = Interpolation::Smooth);
 

@@ -17,15 +17,15 @@ struct Stratum {
 /// A pile of layers with common dip and a gentle undulation.
 ///
 /// The boundary through elevation e is the plane of the given dip and dip direction (clockwise from north) through
-/// (reference.x, reference.y, e), moved vertically by undulation · a C² noise of three octaves, the longest of the given
-/// wavelength. The noise stays within ±1, has a root mean square of 0.2 and is 0 at the reference point.
+/// (reference.x, reference.y, e), moved vertically by undulation · a C² noise of three octaves, the longest of the
+/// given wavelength. The noise stays within ±1, has a root mean square of 0.2 and is 0 at the reference point.
 struct Strata {
-  std::vector<Stratum> layers;        ///< Bottom to top, tops ascending; empty: material 0 everywhere.
-  double dip = 0.0;                   ///< Radians, [0, π/2).
-  double dip_direction = 0.0;         ///< Radians, clockwise from north.
-  double undulation = 0.0;            ///< Metres, ≥ 0.
-  double undulation_wavelength = 100; ///< Metres, > 0.
-  Vec2 reference{0.0};                ///< Map position where `top` holds.
+  std::vector<Stratum> layers;         ///< Bottom to top, tops ascending; empty: material 0 everywhere.
+  double dip = 0.0;                    ///< Radians, [0, π/2).
+  double dip_direction = 0.0;          ///< Radians, clockwise from north.
+  double undulation = 0.0;             ///< Metres, ≥ 0.
+  double undulation_wavelength = 100;  ///< Metres, > 0.
+  Vec2 reference{0.0};                 ///< Map position where `top` holds.
   std::uint64_t seed = 1;
 
   /// Elevation of p along the bedding, back at the reference point: what is compared with Stratum::top.
