@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstring>
 
 #include "outcrop/core/simd.h"
 
@@ -13,56 +15,95 @@ constexpr float kSharp = 1e30f;
 // Below this a direction is noise; the fade is 0 there anyway.
 constexpr float kShortest = 1e-12f;
 
+constexpr int kWidth = 16;
+/// Sixteen floats: one AVX-512 register, two of AVX2, four of SSE2. Lane by lane, so the bits are the same.
+using Vector [[gnu::vector_size(kWidth * sizeof(float))]] = float;
+
+[[gnu::always_inline]] inline Vector load(const float* from) {
+  Vector v;
+  std::memcpy(&v, from, sizeof v);
+  return v;
+}
+[[gnu::always_inline]] inline void store(float* to, const Vector& v) { std::memcpy(to, &v, sizeof v); }
+
 /// Order 0: values; 1: and gradients; 2: and Hessians. The same operations for the lower orders, so the same bits.
-template <int Order>
-[[gnu::always_inline]] inline void fold(const PlaneView& planes, int n, const float* __restrict x, const float* __restrict y,
-                                        const float* __restrict z, Fold& __restrict out) {
+/// Chains · 16 points at `first` of x, y, z; the accumulators stay in registers over all planes.
+template <int Order, int Chains>
+[[gnu::always_inline]] inline void fold_some(const PlaneView& planes, int first, const float* x, const float* y, const float* z,
+                                             Fold& out) {
   const float inverse = planes.rounding > 0.0f ? 1.0f / planes.rounding : kSharp;
   const float sixth = planes.rounding / 6.0f;
-  float* __restrict const c = out.value;
-  float* __restrict const gx = out.gradient[0];
-  float* __restrict const gy = out.gradient[1];
-  float* __restrict const gz = out.gradient[2];
-
-  for (int i = 0; i < n; ++i) {
-    c[i] = planes.nx[0] * x[i] + planes.ny[0] * y[i] + planes.nz[0] * z[i] + planes.d[0];
-    if constexpr (Order >= 1) {
-      gx[i] = planes.nx[0];
-      gy[i] = planes.ny[0];
-      gz[i] = planes.nz[0];
-    }
-    if constexpr (Order >= 2)
-      for (auto& entry : out.hessian) entry[i] = 0.0f;
+  Vector px[Chains], py[Chains], pz[Chains], c[Chains], gx[Chains], gy[Chains], gz[Chains], bend[Chains][6];
+  for (int j = 0; j < Chains; ++j) {
+    px[j] = load(x + first + j * kWidth);
+    py[j] = load(y + first + j * kWidth);
+    pz[j] = load(z + first + j * kWidth);
+    c[j] = planes.nx[0] * px[j] + planes.ny[0] * py[j] + planes.nz[0] * pz[j] + planes.d[0];
+    gx[j] = Vector{} + planes.nx[0];
+    gy[j] = Vector{} + planes.ny[0];
+    gz[j] = Vector{} + planes.nz[0];
+    for (Vector& entry : bend[j]) entry = Vector{};
   }
   for (int plane = 1; plane < planes.count; ++plane) {
     const float nx = planes.nx[plane], ny = planes.ny[plane], nz = planes.nz[plane], d = planes.d[plane];
-    for (int i = 0; i < n; ++i) {
-      const float h = nx * x[i] + ny * y[i] + nz * z[i] + d;
-      const float a = c[i];
-      const float larger = h > a ? h : a;
-      const float near = 1.0f - std::fabs(a - h) * inverse;
-      const float k = near > 0.0f ? near : 0.0f;
-      c[i] = larger + sixth * (k * k * k);
+    for (int j = 0; j < Chains; ++j) {
+      const Vector h = nx * px[j] + ny * py[j] + nz * pz[j] + d;
+      const Vector a = c[j];
+      const Vector larger = h > a ? h : a;
+      const Vector smaller = h > a ? a : h;
+      const Vector near = 1.0f - (larger - smaller) * inverse;
+      const Vector k = near > 0.0f ? near : Vector{};
+      c[j] = larger + sixth * (k * k * k);
       if constexpr (Order >= 1) {
         // Written as a weighted sum, not as g + w (n − g): with a weight of 0 the other side drops out to the bit.
-        const float half = 0.5f * (k * k);
-        const float wh = h > a ? 1.0f - half : half;
-        const float wa = 1.0f - wh;
+        const Vector half = 0.5f * (k * k);
+        const Vector wh = h > a ? 1.0f - half : half;
+        const Vector wa = 1.0f - wh;
         if constexpr (Order >= 2) {
-          const float dx = gx[i] - nx, dy = gy[i] - ny, dz = gz[i] - nz, bend = k * inverse;
-          out.hessian[0][i] = wa * out.hessian[0][i] + bend * (dx * dx);
-          out.hessian[1][i] = wa * out.hessian[1][i] + bend * (dy * dy);
-          out.hessian[2][i] = wa * out.hessian[2][i] + bend * (dz * dz);
-          out.hessian[3][i] = wa * out.hessian[3][i] + bend * (dy * dz);
-          out.hessian[4][i] = wa * out.hessian[4][i] + bend * (dx * dz);
-          out.hessian[5][i] = wa * out.hessian[5][i] + bend * (dx * dy);
+          const Vector dx = gx[j] - nx, dy = gy[j] - ny, dz = gz[j] - nz, weight = k * inverse;
+          bend[j][0] = wa * bend[j][0] + weight * (dx * dx);
+          bend[j][1] = wa * bend[j][1] + weight * (dy * dy);
+          bend[j][2] = wa * bend[j][2] + weight * (dz * dz);
+          bend[j][3] = wa * bend[j][3] + weight * (dy * dz);
+          bend[j][4] = wa * bend[j][4] + weight * (dx * dz);
+          bend[j][5] = wa * bend[j][5] + weight * (dx * dy);
         }
-        gx[i] = wa * gx[i] + wh * nx;
-        gy[i] = wa * gy[i] + wh * ny;
-        gz[i] = wa * gz[i] + wh * nz;
+        gx[j] = wa * gx[j] + wh * nx;
+        gy[j] = wa * gy[j] + wh * ny;
+        gz[j] = wa * gz[j] + wh * nz;
       }
     }
   }
+  for (int j = 0; j < Chains; ++j) {
+    const int at = first + j * kWidth;
+    store(out.value + at, c[j]);
+    if constexpr (Order >= 1) {
+      store(out.gradient[0] + at, gx[j]);
+      store(out.gradient[1] + at, gy[j]);
+      store(out.gradient[2] + at, gz[j]);
+    }
+    if constexpr (Order >= 2)
+      for (int entry = 0; entry < 6; ++entry) store(out.hessian[entry] + at, bend[j][entry]);
+  }
+}
+
+template <int Order>
+[[gnu::always_inline]] inline void fold(const PlaneView& planes, int n, const float* x, const float* y, const float* z, Fold& out) {
+  // Hessians need so many registers that two chains are faster than four.
+  constexpr int kChains = Order >= 2 ? 2 : 4;
+  if (n == kLanes) {
+    for (int first = 0; first < kLanes; first += kChains * kWidth) fold_some<Order, kChains>(planes, first, x, y, z, out);
+    return;
+  }
+  alignas(64) Lane px, py, pz;  // The last vector may reach beyond the caller's points.
+  const int padded = (n + kWidth - 1) / kWidth * kWidth;
+  for (int i = 0; i < padded; ++i) {
+    const int from = i < n ? i : 0;
+    px[i] = x[from];
+    py[i] = y[from];
+    pz[i] = z[from];
+  }
+  for (int first = 0; first < padded; first += kWidth) fold_some<Order, 1>(planes, first, px, py, pz, out);
 }
 
 /// Phase of origin + x in [0, 1]: in double, since the origin may be anywhere in the world.
@@ -98,31 +139,81 @@ void weights(int n, const Lane (&g)[3], Weights& __restrict out) noexcept {
   }
 }
 
+/// Where each phase falls among `count` pixels: the pixel, the place in it, and the weights of a quadratic B-spline.
+struct Taps {
+  int pixel[kLanes];
+  Lane place, before, middle, after;
+};
+
+OUTCROP_SIMD_CLONES
+void locate(int n, const Lane& phase, int count, Taps& __restrict out) noexcept {
+  const auto size = static_cast<float>(count);
+  for (int i = 0; i < n; ++i) {
+    const float at = phase[i] * size;
+    const int pixel = static_cast<int>(at);
+    const float a = at - static_cast<float>(pixel);
+    out.pixel[i] = pixel;
+    out.place[i] = a;
+    out.before[i] = 0.5f * (1.0f - a) * (1.0f - a);
+    out.middle[i] = 0.5f + a * (1.0f - a);
+    out.after[i] = 0.5f * a * a;
+  }
+}
+
+using Four [[gnu::vector_size(4 * sizeof(float))]] = float;
+
+/// Three rows of four pixels, weighted: the spline along v.
+[[gnu::always_inline]] inline Four rows(const Relief::Pixels& pixels, const Taps& column, const Taps& row, int i) {
+  const float* const first = pixels.first + static_cast<std::ptrdiff_t>(row.pixel[i]) * pixels.stride + column.pixel[i];
+  Four below, at, above;
+  std::memcpy(&below, first, sizeof below);
+  std::memcpy(&at, first + pixels.stride, sizeof at);
+  std::memcpy(&above, first + 2 * pixels.stride, sizeof above);
+  return row.before[i] * below + row.middle[i] * at + row.after[i] * above;
+}
+
+/// The weights of four pixels along u; the fourth is 0.
+[[gnu::always_inline]] inline Four columns(float a) {
+  constexpr Four kConstant{0.5f, 0.5f, 0.0f, 0.0f}, kLinear{-1.0f, 1.0f, 0.0f, 0.0f}, kSquare{0.5f, -1.0f, 0.5f, 0.0f};
+  return kConstant + a * (kLinear + a * kSquare);
+}
+
 /// Blend of the relief on the three axis planes; v is up on the vertical ones.
-template <bool Slopes>
-void blend(const Relief& relief, int n, const Lane (&phase)[3], const Lane (&g)[3], const Weights& w, Lane& blended,
-           Carving& out) noexcept {
+void blend(const Relief& relief, int n, const Lane (&phase)[3], const Weights& w, Lane& blended) noexcept {
+  const Relief::Pixels pixels = relief.pixels();
+  Taps column_x, column_y, row_y, row_z;
+  locate(n, phase[0], pixels.width, column_x);
+  locate(n, phase[1], pixels.width, column_y);
+  locate(n, phase[1], pixels.height, row_y);
+  locate(n, phase[2], pixels.height, row_z);
   for (int i = 0; i < n; ++i) {
     blended[i] = 1.0f;
-    if (w.fade[i] > 0.0f) {
-      const Relief::Sample yz = relief.at_phase<Slopes>(phase[1][i], phase[2][i]);
-      const Relief::Sample xz = relief.at_phase<Slopes>(phase[0][i], phase[2][i]);
-      const Relief::Sample xy = relief.at_phase<Slopes>(phase[0][i], phase[1][i]);
-      const float sum = w.share[0][i] * yz.d + w.share[1][i] * xz.d + w.share[2][i] * xy.d;
-      blended[i] = sum < 1.0f ? sum : 1.0f;
-      if constexpr (Slopes) {
-        // blend = Σ|g_j| d_j / Σ|g_j|, so ∂ blend / ∂ g_j = sign(g_j) (d_j − blend) / Σ|g_j|.
-        const float scale = 1.0f / (std::fabs(g[0][i]) + std::fabs(g[1][i]) + std::fabs(g[2][i]));
-        out.blend_by_g[0][i] = std::copysign(scale, g[0][i]) * (yz.d - sum);
-        out.blend_by_g[1][i] = std::copysign(scale, g[1][i]) * (xz.d - sum);
-        out.blend_by_g[2][i] = std::copysign(scale, g[2][i]) * (xy.d - sum);
-        out.blend_by_p[0][i] = w.share[1][i] * xz.du + w.share[2][i] * xy.du;
-        out.blend_by_p[1][i] = w.share[0][i] * yz.du + w.share[2][i] * xy.dv;
-        out.blend_by_p[2][i] = w.share[0][i] * yz.dv + w.share[1][i] * xz.dv;
-      }
-    } else if constexpr (Slopes) {
-      for (int axis = 0; axis < 3; ++axis) out.blend_by_g[axis][i] = out.blend_by_p[axis][i] = 0.0f;
-    }
+    if (w.fade[i] <= 0.0f) continue;
+    const Four along_x = columns(column_x.place[i]), along_y = columns(column_y.place[i]);
+    const Four sum = along_y * (w.share[0][i] * rows(pixels, column_y, row_z, i)) +
+                     along_x * (w.share[1][i] * rows(pixels, column_x, row_z, i) + w.share[2][i] * rows(pixels, column_x, row_y, i));
+    const float total = (sum[0] + sum[2]) + (sum[1] + sum[3]);
+    blended[i] = total < 1.0f ? total : 1.0f;
+  }
+}
+
+/// The derivatives of the blend.
+void blend_slopes(const Relief& relief, int n, const Lane (&phase)[3], const Lane (&g)[3], const Weights& w, const Lane& blended,
+                  Carving& out) noexcept {
+  for (int i = 0; i < n; ++i) {
+    for (int axis = 0; axis < 3; ++axis) out.blend_by_g[axis][i] = out.blend_by_p[axis][i] = 0.0f;
+    if (w.fade[i] <= 0.0f) continue;
+    const Relief::Sample yz = relief.at_phase(phase[1][i], phase[2][i]);
+    const Relief::Sample xz = relief.at_phase(phase[0][i], phase[2][i]);
+    const Relief::Sample xy = relief.at_phase(phase[0][i], phase[1][i]);
+    // blend = Σ|g_j| d_j / Σ|g_j|, so ∂ blend / ∂ g_j = sign(g_j) (d_j − blend) / Σ|g_j|.
+    const float scale = 1.0f / (std::fabs(g[0][i]) + std::fabs(g[1][i]) + std::fabs(g[2][i]));
+    out.blend_by_g[0][i] = std::copysign(scale, g[0][i]) * (yz.d - blended[i]);
+    out.blend_by_g[1][i] = std::copysign(scale, g[1][i]) * (xz.d - blended[i]);
+    out.blend_by_g[2][i] = std::copysign(scale, g[2][i]) * (xy.d - blended[i]);
+    out.blend_by_p[0][i] = w.share[1][i] * xz.du + w.share[2][i] * xy.du;
+    out.blend_by_p[1][i] = w.share[0][i] * yz.du + w.share[2][i] * xy.dv;
+    out.blend_by_p[2][i] = w.share[0][i] * yz.dv + w.share[1][i] * xz.dv;
   }
 }
 
@@ -151,16 +242,14 @@ void carve(const Warp& warp, const Vec3& origin, int n, const float* x, const fl
   phases(origin.z, per_metre, n, z, phase[2]);
   Weights w;
   weights(n, gradient, w);
-  if (slopes)
-    blend<true>(relief, n, phase, gradient, w, blended, out);
-  else
-    blend<false>(relief, n, phase, gradient, w, blended, out);
+  blend(relief, n, phase, w, blended);
   const auto amplitude = static_cast<float>(warp.amplitude);
   for (int i = 0; i < n; ++i) {
     out.depth[i] = amplitude * w.fade[i] * (1.0f - blended[i]);
     out.step[i] = out.depth[i] / w.length[i];
   }
   if (!slopes) return;
+  blend_slopes(relief, n, phase, gradient, w, blended, out);
   for (int i = 0; i < n; ++i) {
     out.length[i] = w.length[i];
     out.fade_gain[i] = amplitude * w.fade_slope[i] * (1.0f - blended[i]);

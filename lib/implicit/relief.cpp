@@ -84,7 +84,28 @@ void Relief::finish(std::vector<float> pixels) {
 
 Relief::Sample Relief::at(double u, double v) const noexcept {
   const double x = u / period_, y = v / period_;
-  return at_phase<true>(static_cast<float>(x - std::floor(x)), static_cast<float>(y - std::floor(y)));
+  return at_phase(static_cast<float>(x - std::floor(x)), static_cast<float>(y - std::floor(y)));
+}
+
+Relief::Sample Relief::at_phase(float u, float v) const noexcept {
+  const float column = u * static_cast<float>(width_);
+  const float row = v * static_cast<float>(height_);
+  const int i = static_cast<int>(column);
+  const int j = static_cast<int>(row);
+  const float a = column - static_cast<float>(i), b = row - static_cast<float>(j);  // In [0, 1): ½ is the pixel's centre.
+  const float left = 0.5f * (1.0f - a) * (1.0f - a), middle = 0.5f + a * (1.0f - a), right = 0.5f * a * a;
+  const float below = 0.5f * (1.0f - b) * (1.0f - b), at = 0.5f + b * (1.0f - b), above = 0.5f * b * b;
+  const float* const taps = padded_.data() + static_cast<std::ptrdiff_t>(j) * stride_ + i;
+  float across[3], up[3];
+  for (int k = 0; k < 3; ++k) {
+    const float low = taps[k], mid = taps[stride_ + k], high = taps[2 * stride_ + k];
+    across[k] = below * low + at * mid + above * high;
+    up[k] = (1.0f - b) * (mid - low) + b * (high - mid);
+  }
+  const auto u_scale = static_cast<float>(width_ / period_), v_scale = static_cast<float>(height_ / period_);
+  return {left * across[0] + middle * across[1] + right * across[2],
+          u_scale * ((1.0f - a) * (across[1] - across[0]) + a * (across[2] - across[1])),
+          v_scale * (left * up[0] + middle * up[1] + right * up[2])};
 }
 
 double Relief::mean() const noexcept {

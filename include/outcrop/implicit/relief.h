@@ -27,9 +27,16 @@ class Relief {
     float d, du, dv;
   };
   [[nodiscard]] Sample at(double u, double v) const noexcept;
-  /// The same at phases in [0, 1]: u / period − floor(u / period). The hot path; derivatives are 0 unless `Slopes`.
-  template <bool Slopes>
+  /// The same at phases in [0, 1]: u / period − floor(u / period).
   [[nodiscard]] Sample at_phase(float u, float v) const noexcept;
+  /// The pixels for a hot loop of one's own: pixel (i, j), v upwards, sees the 3 x 3 at first + j · stride + i, for i in
+  /// [0, width], j in [0, height]; a fourth column may be read. Borrowed.
+  struct Pixels {
+    const float* first;
+    std::ptrdiff_t stride;
+    int width, height;
+  };
+  [[nodiscard]] Pixels pixels() const noexcept { return {padded_.data(), stride_, width_, height_}; }
   /// Bounds |∇d| in 1/m, from the differences of the pixels that each patch of the spline sees.
   [[nodiscard]] double slope() const noexcept { return slope_; }
   [[nodiscard]] double period() const noexcept { return period_; }
@@ -56,30 +63,5 @@ using ReliefPtr = std::shared_ptr<const Relief>;
 
 /// @throws InputError when the file is no image; ParameterError for a period ≤ 0.
 [[nodiscard]] ReliefPtr read_relief(const std::filesystem::path& path, double period);
-
-template <bool Slopes>
-inline Relief::Sample Relief::at_phase(float u, float v) const noexcept {
-  const float column = u * static_cast<float>(width_);
-  const float row = v * static_cast<float>(height_);
-  const int i = static_cast<int>(column);
-  const int j = static_cast<int>(row);
-  const float a = column - static_cast<float>(i), b = row - static_cast<float>(j);  // In [0, 1): ½ is the pixel's centre.
-  const float row_weight[3] = {0.5f * (1.0f - b) * (1.0f - b), 0.75f - (b - 0.5f) * (b - 0.5f), 0.5f * b * b};
-  const float* const taps = padded_.data() + static_cast<std::size_t>(j) * stride_ + i;
-  float across[4];  // Four, not three: a row is one load of four floats.
-  for (int k = 0; k < 4; ++k)
-    across[k] = row_weight[0] * taps[k] + row_weight[1] * taps[stride_ + k] + row_weight[2] * taps[2 * stride_ + k];
-  const float left = 0.5f * (1.0f - a) * (1.0f - a), middle = 0.75f - (a - 0.5f) * (a - 0.5f), right = 0.5f * a * a;
-  Sample sample{left * across[0] + middle * across[1] + right * across[2], 0.0f, 0.0f};
-  if constexpr (Slopes) {
-    float up[4];
-    for (int k = 0; k < 4; ++k)
-      up[k] = (1.0f - b) * (taps[stride_ + k] - taps[k]) + b * (taps[2 * stride_ + k] - taps[stride_ + k]);
-    const auto per_metre = static_cast<float>(1.0 / period_);
-    sample.du = ((1.0f - a) * (across[1] - across[0]) + a * (across[2] - across[1])) * static_cast<float>(width_) * per_metre;
-    sample.dv = (left * up[0] + middle * up[1] + right * up[2]) * static_cast<float>(height_) * per_metre;
-  }
-  return sample;
-}
 
 }  // namespace outcrop
