@@ -16,10 +16,11 @@ constexpr double kTolerance = 1e-10;  // Of the side: vertices nearer to a plane
 class CellSplitter {
  public:
   CellSplitter(const std::vector<Vec3>& samples, const Graph& graph, const std::vector<Disc>& discs,
-               const ClusterOptions& options)
+               const ClusterOptions& options, Seed seed)
       : graph_(graph),
         discs_(discs),
         options_(options),
+        seed_(seed),
         owner_(samples.size(), 0),
         position_(samples.size(), Vec3(0.0)),
         height_(samples.size(), 0.0) {}
@@ -32,7 +33,12 @@ class CellSplitter {
       Node node = std::move(stack.back());
       stack.pop_back();
       if (node.next == node.images.size()) {
-        clusters.push_back(finished(std::move(node)));
+        if (auto halves = halved(node); !halves.empty()) {
+          stack.push_back(std::move(halves[1]));
+          stack.push_back(std::move(halves[0]));
+        } else {
+          clusters.push_back(finished(std::move(node)));
+        }
         continue;
       }
       const DiscImage image = node.images[node.next++];
@@ -46,6 +52,7 @@ class CellSplitter {
   }
 
   [[nodiscard]] std::size_t stopped() const noexcept { return stopped_; }
+  [[nodiscard]] std::size_t halvings() const noexcept { return halvings_; }
 
  private:
   struct DiscImage {
@@ -120,13 +127,64 @@ class CellSplitter {
     for (const std::uint32_t i : node.samples) below += height_[i] < 0.0;
     const auto fewest = static_cast<std::size_t>(options_.min_samples);
     if (below < fewest || node.samples.size() - below < fewest) return stop();
+    std::vector<Node> parts = sides(node, plane, image.disc);
+    for (const Node& part : parts)
+      if (part.shape.empty() || is_blade(part.shape) || inscribed_ball(part.shape).radius < options_.min_inradius)
+        return stop();
+    share_out(node, parts);
+    return parts;
+  }
+
+  // A joint across the middle of a cell that is too long, as slender blocks break; nothing for the others.
+  std::vector<Node> halved(const Node& node) {
+    const Vec3 size = node.shape.bounds().size();
+    if (std::max(size.x, std::max(size.y, size.z)) <= options_.longest) return {};
+    // Along the joints across which it is longest.
+    Vec3 normal = size.x >= size.y && size.x >= size.z ? Vec3(1, 0, 0) : size.y >= size.z ? Vec3(0, 1, 0) : Vec3(0, 0, 1);
+    double longest = 0.0;
+    for (const Disc& disc : discs_)
+      if (const double width = node.shape.distances({disc.normal, 0.0}).width(); width > longest) {
+        longest = width;
+        normal = disc.normal;
+      }
+    const Interval range = node.shape.distances({normal, 0.0});
+    const double share = Rng(seed_, "halving joints", halvings_).uniform(0.4, 0.6);
+    const Plane plane{normal, -(range.lo + share * range.width())};
+    std::size_t below = 0;
+    for (const std::uint32_t i : node.samples) {
+      height_[i] = plane.distance(position_[i]);
+      below += height_[i] < 0.0;
+    }
+    if (below == 0 || below == node.samples.size()) return {};  // a sliver
+    ++halvings_;
+    std::vector<Node> parts = sides(node, plane, kAddedJoint);
+    share_out(node, parts);
+    return parts;
+  }
+
+  // The shapes below and above a plane.
+  [[nodiscard]] std::vector<Node> sides(const Node& node, const Plane& plane, int joint) const {
     const double tolerance = kTolerance * options_.side;
     std::vector<Node> parts(2);
-    parts[0].shape = clipped(node.shape, plane, image.disc, tolerance);
-    parts[1].shape = clipped(node.shape, {-plane.normal, -plane.offset}, image.disc, tolerance);
-    for (const Node& part : parts)
-      if (part.shape.empty() || inscribed_ball(part.shape).radius < options_.min_inradius) return stop();
+    parts[0].shape = clipped(node.shape, plane, joint, tolerance);
+    parts[1].shape = clipped(node.shape, {-plane.normal, -plane.offset}, joint, tolerance);
+    return parts;
+  }
 
+  // Whether the newest face meets another at less than the least angle.
+  [[nodiscard]] bool is_blade(const Polytope& shape) const {
+    const Polytope::Face& cut = shape.faces.back();
+    for (const Polytope::Face& face : shape.faces) {
+      if (glm::dot(face.plane.normal, cut.plane.normal) > -std::cos(options_.least_angle) || &face == &cut) continue;
+      int shared = 0;
+      for (const std::uint32_t v : face.loop) shared += std::find(cut.loop.begin(), cut.loop.end(), v) != cut.loop.end();
+      if (shared >= 2) return true;
+    }
+    return false;
+  }
+
+  // Samples and coming discs go to the side that they are on.
+  void share_out(const Node& node, std::vector<Node>& parts) {
     for (Node& part : parts) {
       part.id = ++last_id_;
       const Box bounds = part.shape.bounds();
@@ -141,7 +199,6 @@ class CellSplitter {
       owner_[i] = part.id;
       part.samples.push_back(i);
     }
-    return parts;
   }
 
   // Whether the disc lies between samples that see each other, and covers enough of what its plane parts.
@@ -184,11 +241,13 @@ class CellSplitter {
   const Graph& graph_;
   const std::vector<Disc>& discs_;
   const ClusterOptions& options_;
+  Seed seed_;
   std::vector<std::uint32_t> owner_;  // Of each sample: the id of its node.
   std::vector<Vec3> position_;        // Of each sample in its cell.
   std::vector<double> height_;        // Of each sample over the plane in question.
   std::uint32_t last_id_ = 0;
   std::size_t stopped_ = 0;
+  std::size_t halvings_ = 0;
 };
 
 }  // namespace
@@ -197,14 +256,14 @@ Clusters split_samples(const std::vector<Vec3>& samples, const Graph& graph, con
                        const ClusterOptions& options, Seed seed, const Task& task) {
   require(graph.first.size() == samples.size() + 1, "graph", "one row a sample", static_cast<double>(graph.first.size()));
   RegionSplitter regions(discs, options, seed);
-  CellSplitter cells(samples, graph, discs, options);
+  CellSplitter cells(samples, graph, discs, options, seed);
   Clusters clusters;
   for (Region& region : regions.run(samples)) {
     task.check();
     cells.split(std::move(region), clusters.list);
   }
   clusters.stopped_joints = cells.stopped();
-  clusters.added_joints = regions.added_joints();
+  clusters.added_joints = regions.added_joints() + cells.halvings();
   clusters.largest_bend = regions.largest_bend();
   return clusters;
 }

@@ -18,6 +18,7 @@ namespace {
 constexpr double kPatternSide = 20.0;   // Metres: the tile for which patterns give their lengths.
 constexpr double kTolerance = 1e-10;    // Of the side: see clusters.cpp.
 constexpr double kLeastInradius = 0.4;  // Of the spacing: a thinner piece would be a blade between two samples.
+constexpr double kLongest = 0.95;       // Of the side: a block as long as the tile would show its period.
 constexpr std::size_t kAnchors = 24;
 constexpr std::size_t kOverlapProbes = 20'000;
 
@@ -112,13 +113,16 @@ Tile make_tile(const TileOptions& options, Seed seed, const Task& task) {
   const Graph graph = neighbour_graph(samples, options.side, sight);
   task.check();
   const std::vector<Disc> discs = draw_discs(pattern, options.side, seed);
+  const double scale = options.side / kPatternSide;
   const ClusterOptions cluster_options{
       .side = options.side,
       .sight = sight,
       .min_samples = options.min_block_samples,
-      .min_inradius = std::max(kLeastInradius * spacing, options.aperture),
+      .min_inradius = std::max({kLeastInradius * spacing, options.aperture, 0.5 * pattern.least_thickness * scale}),
       .covered_share = pattern.covered_share,
-      .column_width = pattern.column_width * options.side / kPatternSide};
+      .least_angle = pattern.least_angle,
+      .longest = kLongest * options.side,
+      .column_width = pattern.column_width * scale};
   const Clusters clusters = split_samples(samples, graph, discs, cluster_options, seed, task);
 
   Tile tile;

@@ -13,7 +13,7 @@
 namespace outcrop {
 
 /// What a face of a cluster lies along, where it is not a disc (discs are numbered from 0).
-inline constexpr int kAddedJoint = -2;   ///< A joint added because a piece still wrapped around the torus.
+inline constexpr int kAddedJoint = -2;   ///< A joint added because a piece wrapped around the torus or was too long.
 inline constexpr int kColumnJoint = -3;  ///< A joint between two columns.
 
 /// Samples that no joint parts, and the cell of the tiling that holds them.
@@ -27,15 +27,17 @@ struct ClusterOptions {
   double side = 20.0;
   double sight = 1.2;            ///< Metres: two samples within it see each other; the graph's radius.
   int min_samples = 12;          ///< A joint ends rather than part fewer samples from a cluster.
-  double min_inradius = 0.2;     ///< Metres: nor does it part off a piece without room for this ball.
+  double min_inradius = 0.2;     ///< Metres: nor does it part off a piece without room for a ball of this radius.
   double covered_share = 0.0;    ///< See JointPattern.
+  double least_angle = 0.0;      ///< See JointPattern.
+  double longest = 19.0;         ///< Metres along x, y or z; joints are added to halve longer cells.
   double column_width = 0.0;     ///< Metres; > 0: columns along z first.
 };
 
 struct Clusters {
   std::vector<Cluster> list;
   std::size_t stopped_joints = 0;  ///< Joints that ended because they would have cut off a chip.
-  std::size_t added_joints = 0;    ///< Joints that no disc stands for; they keep pieces from wrapping.
+  std::size_t added_joints = 0;    ///< Joints that no disc stands for; they keep pieces from wrapping, or from being too long.
   double largest_bend = 0.0;       ///< Largest turn of a disc's normal, radians.
 };
 

@@ -47,6 +47,10 @@ struct JointPattern {
   /// A disc splits a block that it enters when it covers at least this share of the cut, [0, 1]: at 0 a joint grows from
   /// the least touch, at 1 it never grows beyond its disc.
   double covered_share = 0.0;
+  /// The stress shadow of joints: none forms where it would part off a piece thinner than this (the diameter of its
+  /// largest ball), metres at 20 m. 0: as thin as the samples can tell.
+  double least_thickness = 0.0;
+  double least_angle = radians(20.0);  ///< Nor where it would meet another joint at less than this angle, [0, π/3].
 };
 
 /// The pattern that stands for a type; numbers and sources in joints.cpp.

@@ -71,6 +71,9 @@ struct Tile {
   TileStatistics statistics;
 };
 
+/// Edges of the box that has the mesh's volume moments: longest, middle, shortest, metres. For a box, its edges.
+[[nodiscard]] std::array<double, 3> principal_sizes(const BlockMesh& mesh) noexcept;
+
 /// Makes a tile. Same options and seed: the same blocks, on every machine and thread count.
 ///
 /// @throws ParameterError when an option is outside its bound. Cost: O(samples · joints that reach a cluster).
