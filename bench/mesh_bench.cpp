@@ -32,7 +32,8 @@ class Ball final : public outcrop::Field {
 class Hills final : public outcrop::Field {
  public:
   void values(const Points& p, std::span<double> values, std::span<Vec3> gradients) const noexcept override {
-    for (std::size_t i = 0; i < p.size(); ++i) values[i] = p.z[i] - 0.1 * std::sin(3.0 * p.x[i]) * std::sin(4.0 * p.y[i]);
+    for (std::size_t i = 0; i < p.size(); ++i)
+      values[i] = p.z[i] - 0.1 * std::sin(3.0 * p.x[i]) * std::sin(4.0 * p.y[i]);
     for (std::size_t i = 0; i < gradients.size(); ++i)
       gradients[i] = {-0.3 * std::cos(3.0 * p.x[i]) * std::sin(4.0 * p.y[i]),
                       -0.4 * std::sin(3.0 * p.x[i]) * std::cos(4.0 * p.y[i]), 1.0};
@@ -42,7 +43,8 @@ class Hills final : public outcrop::Field {
 
 void report(benchmark::State& state, std::size_t triangles) {
   state.counters["triangles"] = static_cast<double>(triangles);
-  state.counters["triangles/s"] = benchmark::Counter(static_cast<double>(triangles * state.iterations()), benchmark::Counter::kIsRate);
+  state.counters["triangles/s"] =
+      benchmark::Counter(static_cast<double>(triangles * state.iterations()), benchmark::Counter::kIsRate);
 }
 
 template <class F>
@@ -60,7 +62,8 @@ void mesh(benchmark::State& state, Border border, Parts parts) {
 }
 
 void check(benchmark::State& state) {
-  const auto found = outcrop::polygonize(*std::make_shared<Ball>(), {.region = {Vec3(-1.1), Vec3(1.1)}, .resolution = 0.01});
+  const auto found =
+      outcrop::polygonize(*std::make_shared<Ball>(), {.region = {Vec3(-1.1), Vec3(1.1)}, .resolution = 0.01});
   for (auto _ : state) benchmark::DoNotOptimize(outcrop::check_mesh(found.mesh).closed());
   report(state, found.mesh.triangles.size());
 }
@@ -68,7 +71,8 @@ void check(benchmark::State& state) {
 void estimate(benchmark::State& state) {
   const auto field = std::make_shared<Ball>();
   for (auto _ : state)
-    benchmark::DoNotOptimize(outcrop::estimate_polygonize(*field, {.region = {Vec3(-1.1), Vec3(1.1)}, .resolution = 0.0025}));
+    benchmark::DoNotOptimize(
+        outcrop::estimate_polygonize(*field, {.region = {Vec3(-1.1), Vec3(1.1)}, .resolution = 0.0025}));
 }
 
 void ball(benchmark::State& state, Border border, Parts parts) { mesh<Ball>(state, border, parts); }
@@ -76,13 +80,23 @@ void hills(benchmark::State& state, Border border, Parts parts) { mesh<Hills>(st
 
 // Arguments: cells along the region, threads. CPU time of all threads, so that rates are those of one core.
 BENCHMARK_CAPTURE(ball, sheet, Border::Open, Parts::All)
-    ->Args({256, 1})->Args({512, 1})->Args({512, 2})->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
+    ->Args({256, 1})
+    ->Args({512, 1})
+    ->Args({512, 2})
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime();
 BENCHMARK_CAPTURE(ball, grounded, Border::Open, Parts::Grounded)
-    ->Args({512, 1})->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
+    ->Args({512, 1})
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime();
 BENCHMARK_CAPTURE(hills, sheet, Border::Open, Parts::All)
-    ->Args({512, 1})->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
+    ->Args({512, 1})
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime();
 BENCHMARK_CAPTURE(hills, solid, Border::Closed, Parts::Grounded)
-    ->Args({512, 1})->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
+    ->Args({512, 1})
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime();
 BENCHMARK(check)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
 BENCHMARK(estimate)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
 

@@ -51,9 +51,8 @@ void add_box_edges(const TriangleMesh& mesh, const std::vector<unsigned>& sides,
       std::vector<std::uint32_t> cuts;
       for (std::size_t i = 0; i < border.size(); ++i)
         if ((sides[i] & both) == both) cuts.push_back(border[i]);
-      std::sort(cuts.begin(), cuts.end(), [&](std::uint32_t a, std::uint32_t b) {
-        return mesh.positions[a][axis] < mesh.positions[b][axis];
-      });
+      std::sort(cuts.begin(), cuts.end(),
+                [&](std::uint32_t a, std::uint32_t b) { return mesh.positions[a][axis] < mesh.positions[b][axis]; });
       const int first_corner = (end_u << u) | (end_v << v);
       if (corners[first_corner] != kNone) cuts.insert(cuts.begin(), corners[first_corner]);
       if (corners[first_corner | 1 << axis] != kNone) cuts.push_back(corners[first_corner | 1 << axis]);
@@ -68,7 +67,8 @@ void add_box_edges(const TriangleMesh& mesh, const std::vector<unsigned>& sides,
 }
 
 /// The triangles of one side, facing outwards.
-std::vector<std::array<std::uint32_t, 3>> fill_side(const TriangleMesh& mesh, int side, const std::vector<Segment>& segments) {
+std::vector<std::array<std::uint32_t, 3>> fill_side(const TriangleMesh& mesh, int side,
+                                                    const std::vector<Segment>& segments) {
   if (segments.empty()) return {};
   const int axis = side / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
   std::vector<std::uint32_t> used;
@@ -128,7 +128,8 @@ TriangleMesh close_sheet(TriangleMesh mesh, const Field& field, const Lattice& l
   task.check();
   const auto corners = add_corners(mesh, field, lattice, options);
   add_box_edges(mesh, sides, border, corners, segments);
-  const auto walls = parallel_map(6, [&](std::size_t i) { return fill_side(mesh, static_cast<int>(i), segments[i]); }, task);
+  const auto walls = parallel_map(
+      6, [&](std::size_t i) { return fill_side(mesh, static_cast<int>(i), segments[i]); }, task);
   for (const auto& wall : walls) mesh.triangles.insert(mesh.triangles.end(), wall.begin(), wall.end());
   return mesh;
 }

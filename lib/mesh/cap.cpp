@@ -14,7 +14,8 @@ constexpr int kUnknown = -1;
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<std::uint32_t, Kernel>;
-using FaceBase = CGAL::Constrained_triangulation_face_base_2<Kernel, CGAL::Triangulation_face_base_with_info_2<int, Kernel>>;
+using FaceBase =
+    CGAL::Constrained_triangulation_face_base_2<Kernel, CGAL::Triangulation_face_base_with_info_2<int, Kernel>>;
 using Triangulation =
     CGAL::Constrained_Delaunay_triangulation_2<Kernel, CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>,
                                                CGAL::No_constraint_intersection_tag>;
@@ -43,7 +44,8 @@ std::vector<std::array<std::uint32_t, 3>> fill_curves(std::span<const Vec2> poin
                                                       std::span<const std::pair<std::uint32_t, std::uint32_t>> edges) {
   std::vector<std::pair<Kernel::Point_2, std::uint32_t>> numbered;
   numbered.reserve(points.size());
-  for (const Vec2& p : points) numbered.emplace_back(Kernel::Point_2(p.x, p.y), static_cast<std::uint32_t>(numbered.size()));
+  for (const Vec2& p : points)
+    numbered.emplace_back(Kernel::Point_2(p.x, p.y), static_cast<std::uint32_t>(numbered.size()));
   Triangulation triangulation;
   triangulation.insert(numbered.begin(), numbered.end());
   std::vector<Triangulation::Vertex_handle> handles(points.size());

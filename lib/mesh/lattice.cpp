@@ -35,7 +35,8 @@ Lattice Lattice::over(const PolygonizeOptions& options) {
     const double cells = std::ceil(size / options.resolution - kRounding);
     if (cells > kMaxCells) {
       char bound[96];
-      std::snprintf(bound, sizeof bound, "at least %.3g m for %d cells along %c", size / kMaxCells, kMaxCells, "xyz"[axis]);
+      std::snprintf(bound, sizeof bound, "at least %.3g m for %d cells along %c", size / kMaxCells, kMaxCells,
+                    "xyz"[axis]);
       require(false, "resolution", bound, options.resolution);
     }
     lattice.cells[axis] = std::max(1, static_cast<int>(cells));
@@ -66,7 +67,8 @@ std::vector<Cell> split(const Lattice& lattice, const Cell& cell, int level) {
   const int span = kBrickCells << (level - 1);
   for (int octant = 0; octant < 8; ++octant) {
     const IVec3 index = 2 * cell.index + IVec3(octant & 1, octant >> 1 & 1, octant >> 2 & 1);
-    if (index.x * span >= lattice.cells.x || index.y * span >= lattice.cells.y || index.z * span >= lattice.cells.z) continue;
+    if (index.x * span >= lattice.cells.x || index.y * span >= lattice.cells.y || index.z * span >= lattice.cells.z)
+      continue;
     if (may_hold_surface(*field, lattice.box(index, level - 1))) children.push_back({index, field});
   }
   return children;

@@ -57,10 +57,10 @@ struct Cell {
 ///
 /// A node is rock where f < 0; f = 0 counts as air. Rows run along x: bit i of a row is node or edge i.
 struct Brick {
-  IVec3 index{0};                     ///< In bricks.
-  IVec3 cells{0};                     ///< 1 to 8 an axis; less than 8 only at the lattice's end.
-  IVec3 owned{0};                     ///< Nodes an axis whose edges are this brick's: 8, one more at the lattice's end.
-  std::uint64_t first_vertex = 0;     ///< Of the vertices on its own edges, which follow each other row by row.
+  IVec3 index{0};                  ///< In bricks.
+  IVec3 cells{0};                  ///< 1 to 8 an axis; less than 8 only at the lattice's end.
+  IVec3 owned{0};                  ///< Nodes an axis whose edges are this brick's: 8, one more at the lattice's end.
+  std::uint64_t first_vertex = 0;  ///< Of the vertices on its own edges, which follow each other row by row.
   std::uint64_t first_triangle = 0;
   std::array<std::uint16_t, kBrickNodes * kBrickNodes> rock{};
   std::array<std::uint16_t, 3 * kBrickNodes * kBrickNodes> rank{};  ///< Own vertices before the row (axis, k, j).
@@ -69,7 +69,8 @@ struct Brick {
   Brick(const Lattice& lattice, const IVec3& brick_index);
 
   [[nodiscard]] static constexpr int row(int axis, int j, int k) noexcept { return (axis * 9 + k) * 9 + j; }
-  /// Bit i is set when the edge from node (i, j, k) along `axis` joins rock and air; j, k and the edge inside the brick.
+  /// Bit i is set when the edge from node (i, j, k) along `axis` joins rock and air; j, k and the edge inside the
+  /// brick.
   [[nodiscard]] unsigned crossing(int axis, int j, int k) const noexcept {
     const unsigned here = rock[k * 9 + j];
     if (axis == 0) return (here ^ (here >> 1)) & ((1u << cells.x) - 1);
@@ -101,7 +102,8 @@ struct Brick {
         const unsigned any = a | b | c | d, all = a & b & c & d;
         for (unsigned mixed = (any | any >> 1) & ~(all & all >> 1) & mask; mixed != 0; mixed &= mixed - 1) {
           const int i = std::countr_zero(mixed);
-          visit(i + 9 * j + 81 * k, static_cast<int>((a >> i & 3) | (b >> i & 3) << 2 | (c >> i & 3) << 4 | (d >> i & 3) << 6));
+          visit(i + 9 * j + 81 * k,
+                static_cast<int>((a >> i & 3) | (b >> i & 3) << 2 | (c >> i & 3) << 4 | (d >> i & 3) << 6));
         }
       }
     }

@@ -81,8 +81,8 @@ void triangulate(const std::vector<int>& loop, std::vector<CubeTriangle>& triang
     if (j - i < 2) return;
     const int k = apex[i * n + j];
     self(self, i, k);
-    triangles.push_back({static_cast<std::uint8_t>(loop[i]), static_cast<std::uint8_t>(loop[k]),
-                         static_cast<std::uint8_t>(loop[j])});
+    triangles.push_back(
+        {static_cast<std::uint8_t>(loop[i]), static_cast<std::uint8_t>(loop[k]), static_cast<std::uint8_t>(loop[j])});
     self(self, k, j);
   };
   emit(emit, 0, n - 1);

@@ -66,8 +66,8 @@ bool surrounds(const TriangleMesh& mesh, const Part& part, const Vec3& point) {
     const Vec3 a = Vec3(mesh.positions[t[0]]) - point, b = Vec3(mesh.positions[t[1]]) - point,
                c = Vec3(mesh.positions[t[2]]) - point;
     const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
-    angle += 2.0 * std::atan2(glm::dot(a, glm::cross(b, c)), la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la +
-                                                                  glm::dot(c, a) * lb);
+    angle += 2.0 * std::atan2(glm::dot(a, glm::cross(b, c)),
+                              la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb);
   }
   return std::abs(angle) > 2.0 * kPi;
 }
@@ -82,7 +82,8 @@ void drop_surrounded(const TriangleMesh& mesh, Labelling& labelling, const std::
   std::vector<char> wanted(parts.size(), 0);
   for (const std::uint32_t outer : outers) {
     const Box& box = parts[outer].box;
-    auto it = std::lower_bound(inners.begin(), inners.end(), box.lo.x, [&](std::uint32_t p, double x) { return lo_x(p) < x; });
+    auto it = std::lower_bound(inners.begin(), inners.end(), box.lo.x,
+                               [&](std::uint32_t p, double x) { return lo_x(p) < x; });
     for (; it != inners.end() && lo_x(*it) <= box.hi.x; ++it) {
       if (!box.contains(parts[*it].box.lo) || !box.contains(parts[*it].box.hi)) continue;
       pairs.emplace_back(outer, *it);

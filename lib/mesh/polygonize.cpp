@@ -10,6 +10,7 @@
 #include "lattice.h"
 #include "outcrop/core/error.h"
 #include "outcrop/core/parallel.h"
+#include "outcrop/core/rng.h"
 #include "outcrop/mesh/marching_cubes.h"
 #include "parts.h"
 #include "sheet.h"
@@ -23,9 +24,9 @@ using meshing::Cell;
 using meshing::Lattice;
 
 /// Octree cells that the estimate follows at each level, and bricks that it evaluates.
-constexpr std::size_t kSampledCells = 384;
-/// Peak bytes of polygonize: positions, normals and labels twice while chunks are joined, sides and sets of vertices, the
-/// flags of triangles.
+constexpr std::size_t kSampledCells = 1024;
+/// Peak bytes of polygonize: positions, normals and labels twice while chunks are joined, sides and sets of vertices,
+/// the flags of triangles.
 constexpr std::size_t kBytesAVertex = 2 * (2 * sizeof(Vec3f) + sizeof(Label)) + 3 * sizeof(std::uint32_t);
 constexpr std::size_t kBytesATriangle = sizeof(std::array<std::uint32_t, 3>) + sizeof(std::uint32_t) + 1;
 constexpr std::size_t kBytesABrick = 2 * sizeof(Brick);
@@ -33,19 +34,25 @@ constexpr std::size_t kBytesABrick = 2 * sizeof(Brick);
 PolygonizeEstimate estimate(const Field& field, const Lattice& lattice, const Task& task) {
   std::vector<Cell> cells = root_cells(lattice, field);
   double weight = 1.0;
-  // Every so many-th cell in Morton order stands for its neighbours: spread evenly over the surface, and never random.
-  const auto thin_out = [&] {
+  // One cell of every so many in Morton order stands for its neighbours: spread evenly over the surface. Which one is
+  // random, since the order has periods of its own.
+  const auto thin_out = [&](int level) {
     if (cells.size() <= kSampledCells) return;
     const double stride = static_cast<double>(cells.size()) / kSampledCells;
-    for (std::size_t i = 0; i < kSampledCells; ++i) cells[i] = cells[static_cast<std::size_t>((i + 0.5) * stride)];
+    Rng rng(0, "estimate", static_cast<std::uint64_t>(level));
+    for (std::size_t i = 0; i < kSampledCells; ++i) {
+      const double place = static_cast<double>(i) + rng.uniform();
+      cells[i] = cells[static_cast<std::size_t>(place * stride)];
+    }
     cells.resize(kSampledCells);
     weight *= stride;
   };
   for (int level = root_level(lattice); level > 0; --level) {
-    const auto children = parallel_map(cells.size(), [&](std::size_t i) { return split(lattice, cells[i], level); }, task);
+    const auto children = parallel_map(
+        cells.size(), [&](std::size_t i) { return split(lattice, cells[i], level); }, task);
     cells.clear();
     for (const auto& part : children) cells.insert(cells.end(), part.begin(), part.end());
-    thin_out();
+    thin_out(level);
   }
   struct Count {
     std::size_t bricks = 0, cells = 0, triangles = 0;
@@ -70,10 +77,13 @@ PolygonizeEstimate estimate(const Field& field, const Lattice& lattice, const Ta
     sum.cells += c.cells;
     sum.triangles += c.triangles;
   }
-  const auto scaled = [&](std::size_t n) { return static_cast<std::size_t>(std::llround(weight * static_cast<double>(n))); };
+  const auto scaled = [&](std::size_t n) {
+    return static_cast<std::size_t>(std::llround(weight * static_cast<double>(n)));
+  };
   PolygonizeEstimate result{.cells = scaled(sum.cells), .triangles = scaled(sum.triangles)};
   // A triangle mesh has about half as many vertices as triangles.
-  result.bytes = result.triangles / 2 * kBytesAVertex + result.triangles * kBytesATriangle + scaled(sum.bricks) * kBytesABrick;
+  result.bytes =
+      result.triangles / 2 * kBytesAVertex + result.triangles * kBytesATriangle + scaled(sum.bricks) * kBytesABrick;
   return result;
 }
 
@@ -90,8 +100,8 @@ void require_memory(const PolygonizeEstimate& expected, const PolygonizeOptions&
   const double fits = two_digits_up(options.resolution * std::sqrt(static_cast<double>(expected.bytes) / limit));
   const bool small = limit < 0x1p30;
   char bound[96];
-  std::snprintf(bound, sizeof bound, "at least %g m for a memory limit of %.3g %s", fits, limit / (small ? 0x1p20 : 0x1p30),
-                small ? "MiB" : "GiB");
+  std::snprintf(bound, sizeof bound, "at least %g m for a memory limit of %.3g %s", fits,
+                limit / (small ? 0x1p20 : 0x1p30), small ? "MiB" : "GiB");
   require(false, "resolution", bound, options.resolution);
 }
 
@@ -104,7 +114,8 @@ PolygonizeResult polygonize(const Field& field, const PolygonizeOptions& options
   const bool closed = options.border == Border::Closed, all_parts = options.parts == Parts::All && options.keep_voids;
   if (!closed && all_parts) return result;
 
-  // Which rock hangs together is a question to the closed mesh: a ledge that the border cuts off has no wall without it.
+  // Which rock hangs together is a question to the closed mesh: a ledge that the border cuts off has no wall without
+  // it.
   const std::size_t sheet_triangles = result.mesh.triangles.size();
   result.mesh = close_sheet(std::move(result.mesh), field, lattice, options, task);
   if (!all_parts || !closed) {

@@ -10,8 +10,8 @@
 namespace outcrop {
 namespace {
 
-/// Farther from the file's origin than this many times its own size, a mesh gets an origin of its own: floats would lose
-/// more than 1e-4 of its size.
+/// Farther from the file's origin than this many times its own size, a mesh gets an origin of its own: floats would
+/// lose more than 1e-4 of its size.
 constexpr double kFarAway = 1000.0;
 constexpr double kLargest = 1e18;
 
@@ -41,15 +41,18 @@ TriangleMesh to_floats(const std::filesystem::path& path, meshing::FileMesh file
 
 TriangleMesh read_mesh(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
   const bool ply = extension == ".ply", obj = extension == ".obj", stl = extension == ".stl";
   if (!ply && !obj && !stl) meshing::fail(path.string(), "a mesh file: .ply, .obj or .stl", meshing::quoted(extension));
   const std::string bytes = read_text(path);
   if (bytes.empty()) meshing::fail(path.string(), "a mesh", "an empty file");
-  meshing::FileMesh mesh = ply ? meshing::read_ply(path, bytes) : obj ? meshing::read_obj(path, bytes)
-                                                                      : meshing::read_stl(path, bytes);
+  meshing::FileMesh mesh = ply   ? meshing::read_ply(path, bytes)
+                           : obj ? meshing::read_obj(path, bytes)
+                                 : meshing::read_stl(path, bytes);
   if (mesh.triangles.empty())
-    meshing::fail(path.string(), "at least one triangle", std::to_string(mesh.positions.size()) + " vertices and no face");
+    meshing::fail(path.string(), "at least one triangle",
+                  std::to_string(mesh.positions.size()) + " vertices and no face");
   return to_floats(path, std::move(mesh));
 }
 

@@ -43,10 +43,12 @@ struct Header {
 
 std::optional<Scalar> scalar_named(std::string_view name) {
   constexpr std::pair<std::string_view, Scalar> kNames[] = {
-      {"char", Scalar::Int8},     {"int8", Scalar::Int8},     {"uchar", Scalar::Uint8},    {"uint8", Scalar::Uint8},
-      {"short", Scalar::Int16},   {"int16", Scalar::Int16},   {"ushort", Scalar::Uint16},  {"uint16", Scalar::Uint16},
-      {"int", Scalar::Int32},     {"int32", Scalar::Int32},   {"uint", Scalar::Uint32},    {"uint32", Scalar::Uint32},
-      {"float", Scalar::Float32}, {"float32", Scalar::Float32}, {"double", Scalar::Float64}, {"float64", Scalar::Float64}};
+      {"char", Scalar::Int8},      {"int8", Scalar::Int8},       {"uchar", Scalar::Uint8},
+      {"uint8", Scalar::Uint8},    {"short", Scalar::Int16},     {"int16", Scalar::Int16},
+      {"ushort", Scalar::Uint16},  {"uint16", Scalar::Uint16},   {"int", Scalar::Int32},
+      {"int32", Scalar::Int32},    {"uint", Scalar::Uint32},     {"uint32", Scalar::Uint32},
+      {"float", Scalar::Float32},  {"float32", Scalar::Float32}, {"double", Scalar::Float64},
+      {"float64", Scalar::Float64}};
   for (const auto& [known, type] : kNames)
     if (known == name) return type;
   return std::nullopt;
@@ -55,7 +57,8 @@ std::optional<Scalar> scalar_named(std::string_view name) {
 Scalar type_word(const TextLines& lines, std::size_t index) {
   const auto& words = lines.words();
   const auto type = index < words.size() ? scalar_named(words[index]) : std::nullopt;
-  if (!type) lines.fail("a type such as float, uchar or int", index < words.size() ? words[index] : "the end of the line");
+  if (!type)
+    lines.fail("a type such as float, uchar or int", index < words.size() ? words[index] : "the end of the line");
   return *type;
 }
 
@@ -104,7 +107,10 @@ Header read_header(TextLines& lines) {
 class Body {
  public:
   Body(const std::filesystem::path& path, TextLines& lines, Format format)
-      : path_(path.string()), lines_(lines), format_(format), bytes_(format == Format::Text ? std::string_view() : lines.rest()) {}
+      : path_(path.string()),
+        lines_(lines),
+        format_(format),
+        bytes_(format == Format::Text ? std::string_view() : lines.rest()) {}
 
   void begin(const Element& element, std::size_t index) {
     element_ = &element;
@@ -145,14 +151,22 @@ class Body {
   }
   static double decode(Scalar type, const std::array<char, 8>& raw) {
     switch (type) {
-      case Scalar::Int8: return as<std::int8_t>(raw);
-      case Scalar::Uint8: return as<std::uint8_t>(raw);
-      case Scalar::Int16: return as<std::int16_t>(raw);
-      case Scalar::Uint16: return as<std::uint16_t>(raw);
-      case Scalar::Int32: return as<std::int32_t>(raw);
-      case Scalar::Uint32: return as<std::uint32_t>(raw);
-      case Scalar::Float32: return as<float>(raw);
-      case Scalar::Float64: return as<double>(raw);
+      case Scalar::Int8:
+        return as<std::int8_t>(raw);
+      case Scalar::Uint8:
+        return as<std::uint8_t>(raw);
+      case Scalar::Int16:
+        return as<std::int16_t>(raw);
+      case Scalar::Uint16:
+        return as<std::uint16_t>(raw);
+      case Scalar::Int32:
+        return as<std::int32_t>(raw);
+      case Scalar::Uint32:
+        return as<std::uint32_t>(raw);
+      case Scalar::Float32:
+        return as<float>(raw);
+      case Scalar::Float64:
+        return as<double>(raw);
     }
     return 0.0;
   }
@@ -223,7 +237,8 @@ void skip(Body& body, const Element& element) {
   for (std::size_t i = 0; i < element.count; ++i) {
     body.begin(element, i);
     for (const Property& property : element.properties)
-      for (std::size_t n = property.count ? body.length(*property.count) : 1; n > 0; --n) (void)body.number(property.type);
+      for (std::size_t n = property.count ? body.length(*property.count) : 1; n > 0; --n)
+        (void)body.number(property.type);
   }
 }
 
@@ -232,8 +247,8 @@ void skip(Body& body, const Element& element) {
 FileMesh read_ply(const std::filesystem::path& path, std::string_view bytes) {
   TextLines lines(path, bytes);
   const Header header = read_header(lines);
-  const auto vertex = std::find_if(header.elements.begin(), header.elements.end(),
-                                   [](const Element& e) { return e.name == "vertex"; });
+  const auto vertex =
+      std::find_if(header.elements.begin(), header.elements.end(), [](const Element& e) { return e.name == "vertex"; });
   if (vertex == header.elements.end() || vertex->find({"x"}) < 0 || vertex->find({"y"}) < 0 || vertex->find({"z"}) < 0)
     fail(path.string(), "an element vertex with x, y and z", "none in the header");
   FileMesh mesh;

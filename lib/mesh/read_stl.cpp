@@ -88,8 +88,9 @@ FileMesh read_stl(const std::filesystem::path& path, std::string_view bytes) {
     const std::uint32_t count = little_endian(bytes.data() + 80);
     if (bytes.size() == kHeaderBytes + kTriangleBytes * std::size_t{count}) return read_binary(path, bytes, count);
     if (!bytes.starts_with("solid"))
-      fail(path.string(), std::to_string(count) + " triangles in " +
-                              std::to_string(kHeaderBytes + kTriangleBytes * std::size_t{count}) + " bytes of binary STL",
+      fail(path.string(),
+           std::to_string(count) + " triangles in " +
+               std::to_string(kHeaderBytes + kTriangleBytes * std::size_t{count}) + " bytes of binary STL",
            std::to_string(bytes.size()) + " bytes");
   }
   if (!bytes.starts_with("solid")) fail(path.string(), "STL", "a file that is neither its text nor its binary form");

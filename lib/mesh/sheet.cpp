@@ -212,7 +212,8 @@ class TriangleWriter {
         const IVec3 at = IVec3(i, j, k) - step * kBrickCells;
         if (!neighbour || (neighbour->crossing(axis, at.y, at.z) >> at.x & 1) == 0)
           contradiction(lattice_.node(brick.index * kBrickCells + IVec3(i, j, k)));
-        vertex = static_cast<std::uint32_t>(neighbour->first_vertex + neighbour->vertices_before(axis, at.x, at.y, at.z));
+        vertex =
+            static_cast<std::uint32_t>(neighbour->first_vertex + neighbour->vertices_before(axis, at.x, at.y, at.z));
       }
     });
   }
@@ -228,7 +229,8 @@ std::vector<Chunk> build_chunks(const Field& field, const Lattice& lattice, cons
   const int chunk_level = std::clamp(level - kLevelsAboveChunks, 0, kChunkLevel);
   std::vector<Cell> cells = root_cells(lattice, field);
   for (; level > chunk_level; --level) {
-    const auto parts = parallel_map(cells.size(), [&](std::size_t i) { return split(lattice, cells[i], level); }, task);
+    const auto parts = parallel_map(
+        cells.size(), [&](std::size_t i) { return split(lattice, cells[i], level); }, task);
     cells.clear();
     for (const auto& part : parts) cells.insert(cells.end(), part.begin(), part.end());
   }
@@ -281,8 +283,8 @@ PolygonizeResult mesh_sheet(const Field& field, const Lattice& lattice, const Po
     result.statistics.evaluations += chunk.evaluations;
   }
   // Eight corners may still be added.
-  require(vertices < std::numeric_limits<std::uint32_t>::max() - 8, "resolution",
-          "at most 2^32 vertices; coarser", options.resolution);
+  require(vertices < std::numeric_limits<std::uint32_t>::max() - 8, "resolution", "at most 2^32 vertices; coarser",
+          options.resolution);
 
   std::vector<Brick> bricks;
   bricks.reserve(brick_count);

@@ -9,7 +9,8 @@
 
 namespace outcrop::meshing {
 
-/// Disjoint sets with path halving; the smallest member is a set's root, so results do not depend on the order of joins.
+/// Disjoint sets with path halving; the smallest member is a set's root, so results do not depend on the order of
+/// joins.
 class UnionFind {
  public:
   explicit UnionFind(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }

@@ -70,7 +70,8 @@ class Stream {
 };
 
 std::string one_line(std::string text) {
-  std::replace_if(text.begin(), text.end(), [](unsigned char c) { return c < ' '; }, ' ');
+  std::replace_if(
+      text.begin(), text.end(), [](unsigned char c) { return c < ' '; }, ' ');
   return text;
 }
 
@@ -93,14 +94,19 @@ void write_ply(Stream& out, const TriangleMesh& mesh, const MeshMetadata& metada
   for (const std::string& comment : metadata.comments) out.text("comment ").text(one_line(comment)).text("\n");
   for (std::size_t i = 0; labels && i < metadata.material_names.size(); ++i)
     out.text("comment material ").number(i).text(" ").text(one_line(metadata.material_names[i])).text("\n");
-  out.text("element vertex ").number(mesh.positions.size()).text("\nproperty float x\nproperty float y\nproperty float z\n");
+  out.text("element vertex ")
+      .number(mesh.positions.size())
+      .text("\nproperty float x\nproperty float y\nproperty float z\n");
   if (normals) out.text("property float nx\nproperty float ny\nproperty float nz\n");
   if (colours) out.text("property uchar red\nproperty uchar green\nproperty uchar blue\n");
   if (labels) out.text(wide ? "property ushort material\n" : "property uchar material\n");
-  out.text("element face ").number(mesh.triangles.size()).text("\nproperty list uchar uint vertex_indices\nend_header\n");
+  out.text("element face ")
+      .number(mesh.triangles.size())
+      .text("\nproperty list uchar uint vertex_indices\nend_header\n");
 
   std::vector<std::array<std::uint8_t, 3>> colour_bytes;
-  for (const Vec3f& c : metadata.material_colours) colour_bytes.push_back({srgb_byte(c.x), srgb_byte(c.y), srgb_byte(c.z)});
+  for (const Vec3f& c : metadata.material_colours)
+    colour_bytes.push_back({srgb_byte(c.x), srgb_byte(c.y), srgb_byte(c.z)});
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
     out.raw(mesh.positions[v]);
     if (normals) out.raw(mesh.normals[v]);
@@ -171,8 +177,8 @@ void write_obj(Stream& out, const TriangleMesh& mesh, const MeshMetadata& metada
 }
 
 void write_stl(Stream& out, const TriangleMesh& mesh, const MeshMetadata& metadata) {
-  require(mesh.triangles.size() <= std::numeric_limits<std::uint32_t>::max(), "triangles", "at most 2^32 - 1 in an .stl file",
-          static_cast<double>(mesh.triangles.size()));
+  require(mesh.triangles.size() <= std::numeric_limits<std::uint32_t>::max(), "triangles",
+          "at most 2^32 - 1 in an .stl file", static_cast<double>(mesh.triangles.size()));
   // Readers take a header that begins with "solid" for the text form.
   constexpr std::size_t kHeaderBytes = 80;
   std::string header = "binary STL, metres";
@@ -190,11 +196,14 @@ void write_stl(Stream& out, const TriangleMesh& mesh, const MeshMetadata& metada
 
 }  // namespace
 
-void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh, const MeshMetadata& metadata, const Task& task) {
+void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh, const MeshMetadata& metadata,
+                const Task& task) {
   std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
   const bool ply = extension == ".ply", obj = extension == ".obj", stl = extension == ".stl";
-  require(ply || obj || stl, "mesh file", "a name that ends in .ply, .obj or .stl", meshing::quoted(path.filename().string()));
+  require(ply || obj || stl, "mesh file", "a name that ends in .ply, .obj or .stl",
+          meshing::quoted(path.filename().string()));
 
   OutputFile file(path);
   task.begin("writing " + path.filename().string(), (stl ? 0 : mesh.positions.size()) + mesh.triangles.size());

@@ -35,7 +35,8 @@ int main(int argc, char** argv) {
     outcrop::write_mesh(folder / name, outcrop::polygonize(*field, options).mesh);
   };
   for (const outcrop::Seed seed : {0, 1}) {
-    write("waves" + std::to_string(seed) + ".ply", outcrop::test::waves(seed, 0.6, 0.1 * static_cast<double>(seed)), 1.0, 0.06);
+    write("waves" + std::to_string(seed) + ".ply", outcrop::test::waves(seed, 0.6, 0.1 * static_cast<double>(seed)),
+          1.0, 0.06);
     write("noise" + std::to_string(seed) + ".obj", noise(seed), 8.0, 1.0);
   }
   const FieldPtr hills = outcrop::test::formula(

@@ -14,7 +14,9 @@ namespace {
 
 using Triangle = std::array<Vec3, 3>;
 
-bool rock(int cube_case, const IVec3& corner) { return (cube_case >> (corner.x + 2 * corner.y + 4 * corner.z) & 1) != 0; }
+bool rock(int cube_case, const IVec3& corner) {
+  return (cube_case >> (corner.x + 2 * corner.y + 4 * corner.z) & 1) != 0;
+}
 
 IVec3 far_end(const CubeEdge& edge) {
   IVec3 to = edge.from;
@@ -119,7 +121,9 @@ TEST(MarchingCubes, NeverIntersectThemselvesWhereverTheEdgesAreCut) {
         cut[e] = Vec3(edge.from);
         // One in three near an end, where loops are most warped.
         const double t = rng.uniform(), extreme = rng.uniform();
-        cut[e][edge.axis] += extreme < 1.0 / 6 ? 0.02 + 0.02 * t : extreme > 5.0 / 6 ? 0.96 + 0.02 * t : 0.02 + 0.96 * t;
+        cut[e][edge.axis] += extreme < 1.0 / 6   ? 0.02 + 0.02 * t
+                             : extreme > 5.0 / 6 ? 0.96 + 0.02 * t
+                                                 : 0.02 + 0.96 * t;
       }
       for (const CubeTriangle& a : triangles)
         for (const CubeTriangle& b : triangles) {

@@ -28,9 +28,7 @@ TriangleMesh two_materials() {
   return mesh;
 }
 
-void put(const std::filesystem::path& path, std::string_view text) {
-  std::ofstream(path, std::ios::binary) << text;
-}
+void put(const std::filesystem::path& path, std::string_view text) { std::ofstream(path, std::ios::binary) << text; }
 
 /// The message of reading `text` as a file of that name, without the folder.
 std::string complaint(const std::string& name, std::string_view text) {
@@ -111,8 +109,9 @@ TEST(MeshFiles, ReadPlyOfAnyPropertyOrderTypeAndByteOrder) {
   EXPECT_EQ(text.positions[2], Vec3f(1, 1, 0.5));
   EXPECT_EQ(text.triangles[1], (std::array<std::uint32_t, 3>{0, 2, 3}));
 
-  std::string big = "ply\nformat binary_big_endian 1.0\nelement vertex 3\nproperty short x\nproperty short y\nproperty short z\n"
-                    "element face 1\nproperty list uchar uchar vertex_indices\nend_header\n";
+  std::string big =
+      "ply\nformat binary_big_endian 1.0\nelement vertex 3\nproperty short x\nproperty short y\nproperty short z\n"
+      "element face 1\nproperty list uchar uchar vertex_indices\nend_header\n";
   for (const int v : {0, 0, 0, 258, 0, 0, 0, -2, 0}) {
     big += static_cast<char>(v >> 8 & 255);
     big += static_cast<char>(v & 255);
@@ -130,20 +129,23 @@ TEST(MeshFiles, ReadTextStlAndObjWithRelativeNumbers) {
       "solid one\n facet normal 0 0 1\n  outer loop\n   vertex 0 0 0\n   vertex 1e0 0 0\n   vertex 0 +1.5 0\n"
       "  endloop\n endfacet\nendsolid one\n");
   EXPECT_EQ(read_mesh(scratch / "one.stl").positions[2], Vec3f(0, 1.5, 0));
-  put(scratch / "quad.obj", "# quad\nv 0 0 0\nv 1 0 0 0.5 0.5 0.5\nv 1 1 0\nv 0 1 0\nvt 0 0\nf -4/1 2/1/1 3//1 -1 # all\n");
+  put(scratch / "quad.obj",
+      "# quad\nv 0 0 0\nv 1 0 0 0.5 0.5 0.5\nv 1 1 0\nv 0 1 0\nvt 0 0\nf -4/1 2/1/1 3//1 -1 # all\n");
   EXPECT_EQ(read_mesh(scratch / "quad.obj").triangles.size(), 2u);
 }
 
 TEST(MeshFiles, KeepMapCoordinatesThroughAnOriginOfTheirOwn) {
   const Scratch scratch;
-  put(scratch / "map.obj", "v 412345.125 5212345.25 1500\nv 412346.125 5212345.25 1500\nv 412345.125 5212346.5 1500\nf 1 2 3\n");
+  put(scratch / "map.obj",
+      "v 412345.125 5212345.25 1500\nv 412346.125 5212345.25 1500\nv 412345.125 5212346.5 1500\nf 1 2 3\n");
   const TriangleMesh mesh = read_mesh(scratch / "map.obj");
   EXPECT_EQ(mesh.origin + Vec3(mesh.positions[2]), Vec3(412345.125, 5212346.5, 1500));
 }
 
 TEST(MeshFiles, SayWhereAFileIsWrong) {
-  const std::string header = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
-                             "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+  const std::string header =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
   const std::pair<std::string, std::string> files[] = {
       {"a.xyz", "1 2 3"},
       {"a.obj", ""},
@@ -164,7 +166,9 @@ TEST(MeshFiles, SayWhereAFileIsWrong) {
       {"a.ply", header + "0 0 0\n1 0 0\n0 1 inf\n3 0 1 2\n"},
       {"a.ply", header + "0 0 0\n1 0 0\n0 1 0\n2 0 1\n"},
       {"a.ply", header + "0 0 0\n1 0 0\n0 1 0\n"},
-      {"a.ply", "ply\nformat binary_little_endian 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\nend_header\nabcdefghijklmno"},
+      {"a.ply",
+       "ply\nformat binary_little_endian 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float "
+       "z\nend_header\nabcdefghijklmno"},
   };
   const std::string expected[] = {
       "a.xyz: expected a mesh file: .ply, .obj or .stl, got \".xyz\"",

@@ -33,9 +33,11 @@ FieldPtr boulders(Seed seed) {
   std::vector<FieldPtr> rocks{labelled(slab(-20.0, 0.0), 7)};
   for (std::uint64_t i = 0; i < 60; ++i) {
     Rng rng(seed, "boulder", i);
-    const double x = rng.uniform(-4.0, 4.0), y = rng.uniform(-4.0, 4.0), z = rng.uniform(-0.5, 2.5), r = rng.uniform(0.2, 0.7);
+    const double x = rng.uniform(-4.0, 4.0), y = rng.uniform(-4.0, 4.0), z = rng.uniform(-0.5, 2.5),
+                 r = rng.uniform(0.2, 0.7);
     const Vec3 c(x, y, z);
-    rocks.push_back(labelled(i % 2 == 0 ? sphere(c, r) : box_solid({c - Vec3(r), c + Vec3(r)}, 0.3 * r), static_cast<Label>(i)));
+    rocks.push_back(
+        labelled(i % 2 == 0 ? sphere(c, r) : box_solid({c - Vec3(r), c + Vec3(r)}, 0.3 * r), static_cast<Label>(i)));
   }
   return difference_of(union_of(std::move(rocks)), sphere({0, 0, -1}, 1.5));
 }
@@ -61,7 +63,8 @@ TEST(NarrowedMesh, LeavesNoBoulderInTheAir) {
   for (Seed seed = 0; seed < 3; ++seed) {
     for (const Border border : {Border::Open, Border::Closed}) {
       const PolygonizeResult result = polygonize(
-          *boulders(seed), {.region = {{-4, -4, -3}, {4, 4, 3}}, .resolution = 0.17, .border = border, .parts = Parts::Grounded});
+          *boulders(seed),
+          {.region = {{-4, -4, -3}, {4, 4, 3}}, .resolution = 0.17, .border = border, .parts = Parts::Grounded});
       EXPECT_GT(result.statistics.parts_removed, 0u) << "seed " << seed;
       EXPECT_TRUE(border == Border::Open || check_mesh(result.mesh).parts == 1) << "seed " << seed;
     }

@@ -69,9 +69,7 @@ TEST(Polygonize, PutsVerticesOnTheSurfaceWithItsNormals) {
 }
 
 TEST(Polygonize, MeshesATorusWithItsHole) {
-  const FieldPtr torus = formula([](const Vec3& p) {
-    return std::hypot(std::hypot(p.x, p.y) - 1.0, p.z) - 0.3;
-  });
+  const FieldPtr torus = formula([](const Vec3& p) { return std::hypot(std::hypot(p.x, p.y) - 1.0, p.z) - 0.3; });
   const TriangleMesh mesh = polygonize(*torus, cube(1.5, 0.06)).mesh;
   expect_solid(mesh, "torus");
   EXPECT_EQ(check_mesh(mesh).euler, 0);
@@ -79,9 +77,8 @@ TEST(Polygonize, MeshesATorusWithItsHole) {
 }
 
 TEST(Polygonize, KeepsTwoBallsApart) {
-  const FieldPtr balls = formula([](const Vec3& p) {
-    return std::min(glm::length(p - Vec3(1.1, 0, 0)), glm::length(p + Vec3(1.1, 0, 0))) - 1.0;
-  });
+  const FieldPtr balls = formula(
+      [](const Vec3& p) { return std::min(glm::length(p - Vec3(1.1, 0, 0)), glm::length(p + Vec3(1.1, 0, 0))) - 1.0; });
   const TriangleMesh mesh = polygonize(*balls, cube(2.2, 0.1)).mesh;
   expect_solid(mesh, "two balls");
   EXPECT_EQ(check_mesh(mesh).parts, 2u);
@@ -134,7 +131,8 @@ TEST(Polygonize, RemovesTheVoidOfARockThatItRemoves) {
 
 TEST(Polygonize, ClosesPlanesAtTheRegionHoweverTheyCutIt) {
   // Through nodes, edges and corners of the lattice and of the region, and in general position.
-  const Vec3 normals[] = {{0, 0, 1}, {0, 0, -1}, {1, 0, 0}, {0, 1, 1}, {1, 1, 1}, {-1, 2, 3}, {0.3, -0.4, 0.86}, {1, -1, 0}};
+  const Vec3 normals[] = {{0, 0, 1}, {0, 0, -1}, {1, 0, 0},         {0, 1, 1},
+                          {1, 1, 1}, {-1, 2, 3}, {0.3, -0.4, 0.86}, {1, -1, 0}};
   const double distances[] = {-1.0, -0.5, -1e-9, 0.0, 1e-9, 0.25, 0.37, 0.999999999, 1.0};
   for (const Vec3& normal : normals) {
     for (const double distance : distances) {
@@ -173,7 +171,8 @@ TEST(Polygonize, TurnsSolidRockIntoTheRegionsBox) {
 TEST(Polygonize, MakesASolidOfEveryRoughField) {
   for (Seed seed = 0; seed < 24; ++seed) {
     const double offset = -0.3 + 0.025 * static_cast<double>(seed);
-    PolygonizeOptions options{.region = {{-2.0, -1.5, -1.0}, {2.0, 1.7, 1.3}}, .resolution = 0.11, .border = Border::Closed};
+    PolygonizeOptions options{
+        .region = {{-2.0, -1.5, -1.0}, {2.0, 1.7, 1.3}}, .resolution = 0.11, .border = Border::Closed};
     const FieldPtr field = waves(seed, 0.7, offset);
     const std::string what = "seed " + std::to_string(seed);
     options.keep_voids = true;
@@ -211,9 +210,8 @@ TEST(Polygonize, MeshesRandomSignsAtTheNodesWithoutADefect) {
 
 TEST(Polygonize, MeshesPlatesThinnerThanACellWithoutADefect) {
   for (const double thickness : {0.3, 0.12, 0.05, 0.01}) {
-    const FieldPtr plate = formula([=](const Vec3& p) {
-      return std::abs(glm::dot(p, glm::normalize(Vec3(0.1, 0.2, 1.0)))) - thickness / 2;
-    });
+    const FieldPtr plate = formula(
+        [=](const Vec3& p) { return std::abs(glm::dot(p, glm::normalize(Vec3(0.1, 0.2, 1.0)))) - thickness / 2; });
     const TriangleMesh mesh = polygonize(*plate, cube(1.0, 0.1)).mesh;
     if (!mesh.triangles.empty()) expect_solid(mesh, "plate of " + std::to_string(thickness));
   }
@@ -233,8 +231,7 @@ TEST(Polygonize, LeavesTheSheetOpenAtTheBorderAlone) {
   std::set<std::pair<std::uint32_t, std::uint32_t>> sides;
   for (const auto& t : mesh.triangles)
     for (int i = 0; i < 3; ++i) sides.emplace(t[i], t[(i + 1) % 3]);
-  for (const auto& [a, b] : sides)
-    EXPECT_TRUE(sides.contains({b, a}) || (on_border(a) && on_border(b)));
+  for (const auto& [a, b] : sides) EXPECT_TRUE(sides.contains({b, a}) || (on_border(a) && on_border(b)));
 }
 
 TEST(Polygonize, KeepsNothingThatFloatsNotEvenBesideAnOpenBorder) {
@@ -283,8 +280,7 @@ TEST(Polygonize, GivesTheSameMeshFiveThousandKilometresAway) {
   const TriangleMesh a = polygonize(*near, here).mesh, b = polygonize(*far, there).mesh;
   ASSERT_EQ(a.triangles, b.triangles);
   EXPECT_EQ(b.origin, there.region.lo);
-  for (std::size_t v = 0; v < a.positions.size(); ++v)
-    EXPECT_LT(glm::length(a.positions[v] - b.positions[v]), 1e-3f);
+  for (std::size_t v = 0; v < a.positions.size(); ++v) EXPECT_LT(glm::length(a.positions[v] - b.positions[v]), 1e-3f);
 }
 
 TEST(Polygonize, NarrowsOnTheWayDownAndEvaluatesOnlyNearTheSurface) {
@@ -313,7 +309,8 @@ TEST(Polygonize, NamesTheResolutionThatFitsTheMemoryLimit) {
     (void)polygonize(*ball(Vec3(0), 1.0), options);
     FAIL() << "accepted";
   } catch (const ParameterError& e) {
-    ASSERT_EQ(std::sscanf(e.what(), "resolution: expected at least %lf m for a memory limit of 1 MiB, got 0.01", &fits), 1)
+    ASSERT_EQ(std::sscanf(e.what(), "resolution: expected at least %lf m for a memory limit of 1 MiB, got 0.01", &fits),
+              1)
         << e.what();
   }
   options.resolution = fits * 1.1;

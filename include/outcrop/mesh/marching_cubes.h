@@ -18,7 +18,8 @@ struct CubeEdge {
 
 inline constexpr int kCubeEdges = 12;
 
-/// Edges 4a to 4a + 3 run along axis a; the rest of the number is the place on the next axis and twice that on the last.
+/// Edges 4a to 4a + 3 run along axis a; the rest of the number is the place on the next axis and twice that on the
+/// last.
 [[nodiscard]] constexpr CubeEdge cube_edge(int edge) noexcept {
   const int axis = edge / 4;
   IVec3 from{0};

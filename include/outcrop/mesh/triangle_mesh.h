@@ -14,13 +14,13 @@ namespace outcrop {
 
 /// Counter-clockwise seen from the air. Positions are floats relative to `origin`, so that they stay exact far away.
 struct TriangleMesh {
-  Vec3 origin{0.0};                                   ///< World position of (0, 0, 0), metres.
+  Vec3 origin{0.0};  ///< World position of (0, 0, 0), metres.
   std::vector<Vec3f> positions;
-  std::vector<Vec3f> normals;                         ///< Unit, one a vertex, or empty.
-  std::vector<Label> labels;                          ///< Material, one a vertex, or empty.
+  std::vector<Vec3f> normals;  ///< Unit, one a vertex, or empty.
+  std::vector<Label> labels;   ///< Material, one a vertex, or empty.
   std::vector<std::array<std::uint32_t, 3>> triangles;
 
-  [[nodiscard]] Box bounds() const;                   ///< World.
+  [[nodiscard]] Box bounds() const;  ///< World.
 };
 
 /// The same surface with positions relative to another origin: what writers and viewers need to see other coordinates.

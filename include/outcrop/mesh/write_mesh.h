@@ -18,8 +18,8 @@ struct MeshMetadata {
 
 /// Chooses the format by the extension. Positions are written relative to mesh.origin.
 ///
-/// .ply: float x y z, nx ny nz, uchar red green blue (sRGB; when there are colours) and uchar material (ushort past 255),
-/// faces of uint. .obj: v, vn, and usemtl by the label that most corners of a face have. .stl: positions alone.
+/// .ply: float x y z, nx ny nz, uchar red green blue (sRGB; when there are colours) and uchar material (ushort past
+/// 255), faces of uint. .obj: v, vn, and usemtl by the label that most corners of a face have. .stl: positions alone.
 /// @throws ParameterError naming the known extensions; SystemError; Cancelled.
 void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh, const MeshMetadata& metadata = {},
                 const Task& task = {});
