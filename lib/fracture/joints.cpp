@@ -203,13 +203,13 @@ std::vector<Disc> draw_discs(const JointPattern& pattern, double side, Seed seed
     Rng rng(seed, "discs", static_cast<std::uint64_t>(i));
     const std::size_t s = next_set(pattern, drawn, i);
     const JointSet& set = pattern.sets[s];
-    Disc disc;
-    disc.radius = scale * radius_of(set, rng.uniform());
-    disc.centre = drawn[s].draw_centre(set.normal, disc.radius, spacing, shadow, rng);
-    drawn[s].insert(disc);
     // Irregular discs are spread evenly over the sequence: the count is right, not only its mean.
     const double share = pattern.irregular_share;
     const bool irregular = std::floor((i + 1) * share + 0.5) > std::floor(i * share + 0.5);
+    Disc disc;
+    disc.radius = scale * radius_of(set, rng.uniform());
+    disc.centre = drawn[s].draw_centre(set.normal, disc.radius, spacing, irregular ? least : shadow, rng);
+    drawn[s].insert(disc);
     disc.set = irregular ? -1 : static_cast<int>(s);
     disc.normal = irregular ? rng.direction() : fisher_direction(set.normal, set.kappa, rng);
     discs.push_back(disc);

@@ -6,7 +6,7 @@
 namespace outcrop {
 namespace {
 
-constexpr int kCells = 12;  // An axis: about the size of a block at the paper's hundred blocks a tile.
+constexpr double kCellsPerBlock = 2.5;  // An axis: few blocks a cell, few cells a block.
 
 struct BlockImage {
   std::uint32_t block;
@@ -16,8 +16,10 @@ struct BlockImage {
 }  // namespace
 
 double overlap_share(const Tile& tile, std::size_t probes, Seed seed) {
-  std::vector<std::vector<BlockImage>> cells(kCells * kCells * kCells);
-  const double width = tile.side / kCells;
+  const int count = 1 + static_cast<int>(kCellsPerBlock * std::cbrt(static_cast<double>(tile.blocks.size())));
+  const auto index = [&](const IVec3& c) { return (static_cast<std::size_t>(c.z) * count + c.y) * count + c.x; };
+  std::vector<std::vector<BlockImage>> cells(static_cast<std::size_t>(count) * count * count);
+  const double width = tile.side / count;
   for (std::uint32_t b = 0; b < tile.blocks.size(); ++b) {
     const Block& block = tile.blocks[b];
     const IVec3 lo(glm::floor((block.centre + block.bounds.lo) / width));
@@ -25,10 +27,9 @@ double overlap_share(const Tile& tile, std::size_t probes, Seed seed) {
     for (int z = lo.z; z <= hi.z; ++z)
       for (int y = lo.y; y <= hi.y; ++y)
         for (int x = lo.x; x <= hi.x; ++x) {
-          const IVec3 turn(glm::floor(Vec3(x, y, z) / static_cast<double>(kCells)));
-          const IVec3 c = IVec3(x, y, z) - kCells * turn;
-          cells[(static_cast<std::size_t>(c.z) * kCells + c.y) * kCells + c.x].push_back(
-              {b, block.centre - tile.side * Vec3(turn)});
+          const IVec3 turn(glm::floor(Vec3(x, y, z) / static_cast<double>(count)));
+          const IVec3 c = IVec3(x, y, z) - count * turn;
+          cells[index(c)].push_back({b, block.centre - tile.side * Vec3(turn)});
         }
   }
   std::size_t covered_twice = 0;
@@ -36,9 +37,9 @@ double overlap_share(const Tile& tile, std::size_t probes, Seed seed) {
   for (std::size_t i = 0; i < probes; ++i) {
     Vec3 p;
     for (int axis = 0; axis < 3; ++axis) p[axis] = tile.side * rng.uniform();
-    const IVec3 c = glm::min(IVec3(p / width), IVec3(kCells - 1));
+    const IVec3 c = glm::min(IVec3(p / width), IVec3(count - 1));
     int covers = 0;
-    for (const BlockImage& image : cells[(static_cast<std::size_t>(c.z) * kCells + c.y) * kCells + c.x]) {
+    for (const BlockImage& image : cells[index(c)]) {
       const std::vector<Plane>& planes = tile.blocks[image.block].planes;
       const Vec3 q = p - image.centre;
       covers += std::all_of(planes.begin(), planes.end(), [&](const Plane& plane) { return plane.distance(q) < 0.0; });

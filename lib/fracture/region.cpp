@@ -12,6 +12,7 @@ constexpr int kLongestNormal = 9;             // |m|² of the whole vectors that
 constexpr double kLengthPenalty = 8.0 * kPi / 180.0;  // Radians of bend that one more tile of |m| is worth: long m, many planes.
 constexpr double kLargestBend = 30.0 * kPi / 180.0;   // Radians; beyond it a joint is added instead.
 constexpr double kBeddingBend = 20.0 * kPi / 180.0;   // Radians between a slab's normal and a joint that runs along it.
+constexpr double kBeddingRadius = 0.75;  // Of the side: wider joints cross the whole tile.
 constexpr double kSameSize = 0.5;             // Discs of at least this share of the largest radius may close a region.
 constexpr double kSteepest = 0.82;            // |cos| between the walls of a rod: about 35°.
 constexpr double kAcross = 0.5;               // |cos| between a rod's direction and the normal that cuts it.
@@ -287,7 +288,7 @@ Region RegionSplitter::close(Region region, const Closing& closing) {
   return region;
 }
 
-// Joints wider than half a tile that run along a slab are bedding: they part it into layers, each of which is closed by
+// Joints about as wide as the tile that run along a slab are bedding: they part it into layers, each of which is closed by
 // joints of its own, so that small joints need not cross the whole tile.
 std::vector<Region> RegionSplitter::bedded(Region slab) {
   const Vec3 up = slab.walls[1].plane.normal;
@@ -297,7 +298,7 @@ std::vector<Region> RegionSplitter::bedded(Region slab) {
   for (int i = 0; i < static_cast<int>(discs_.size()); ++i) {
     const Disc& disc = discs_[static_cast<std::size_t>(i)];
     const double bend = angle(glm::dot(disc.normal, up));
-    if (disc.radius < 0.5 * options_.side || bend > kBeddingBend || is_spent(slab, i)) continue;
+    if (disc.radius < kBeddingRadius * options_.side || bend > kBeddingBend || is_spent(slab, i)) continue;
     const double pitch = ceiling - floor;
     const double along = glm::dot(up, disc.centre) - floor;
     const double height = floor + along - pitch * std::floor(along / pitch);

@@ -29,6 +29,7 @@ struct PlainHull {
 
 void check(const TileOptions& options, double spacing) {
   require(std::isfinite(options.side) && options.side > 0.0, "side", "> 0 and finite", options.side);
+  require(std::isfinite(options.spacing) && options.spacing >= 0.0, "spacing", "≥ 0 and finite", options.spacing);
   require(spacing > 0.0 && spacing <= options.side / 8.0, "spacing", "in (0, side / 8]", spacing);
   require(options.neighbour_factor >= 1.0 && options.neighbour_factor <= 4.0, "neighbour_factor", "in [1, 4]",
           options.neighbour_factor);
