@@ -58,13 +58,6 @@ bool wants_triangles(const Outputs& outputs) {
   return std::any_of(outputs.meshes.begin(), outputs.meshes.end(), [](const auto& path) { return !is_vdb(path); });
 }
 
-TriangleMesh rebased(TriangleMesh mesh, const Vec3& origin) {
-  const Vec3 shift = mesh.origin - origin;
-  for (Vec3f& p : mesh.positions) p = Vec3f(Vec3(p) + shift);
-  mesh.origin = origin;
-  return mesh;
-}
-
 void write_preview(const std::filesystem::path& path, const Preview& preview) {
   write_image(path, extension(path) == ".exr" ? preview.layers : preview.beauty);
 }

@@ -8,8 +8,6 @@
 #include <vector>
 
 #include "outcrop/amplify/report.h"
-#include "outcrop/mesh/triangle_mesh.h"
-#include "outcrop/mesh/write_mesh.h"
 
 namespace outcrop {
 
@@ -28,9 +26,6 @@ void check_outputs(const Outputs& outputs, const std::vector<std::filesystem::pa
 [[nodiscard]] bool is_vdb(const std::filesystem::path& path);
 /// Whether any of the outputs needs triangles.
 [[nodiscard]] bool wants_triangles(const Outputs& outputs);
-
-/// The same mesh with positions relative to `origin`: what its file holds.
-[[nodiscard]] TriangleMesh rebased(TriangleMesh mesh, const Vec3& origin);
 
 /// Writes .png (beauty) or .exr (all layers).
 void write_preview(const std::filesystem::path& path, const Preview& preview);

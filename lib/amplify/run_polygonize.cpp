@@ -9,6 +9,7 @@
 #include "outcrop/amplify/scene_file.h"
 #include "outcrop/core/parallel.h"
 #include "outcrop/implicit/grid_field.h"
+#include "outcrop/mesh/write_mesh.h"
 #include "outcrop/render/camera.h"
 #include "outputs.h"
 

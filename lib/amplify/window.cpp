@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "outcrop/amplify/run_amplify.h"
 #include "outputs.h"
@@ -11,7 +12,8 @@ constexpr double kDefaultTriangles = 4e6;   // A default run takes seconds, and 
 constexpr double kRegionTriangles = 8e6;    // Who names a region may wait a little longer.
 constexpr double kCellsPerBlock = 12.0;     // Fewer lose the rounding and the relief, more show nothing new.
 constexpr double kBlocksPerSide = 5.0;      // 125 blocks a tile, as in Table 1 of Paris et al. 2020.
-constexpr double kTrianglesPerArea = 4.0;   // Of ground, in cells²: 3 on a smooth slope (marching cubes), more on rock.
+constexpr double kLeastCellsPerBlock = 5.0;  // Of the material with the smallest blocks.
+constexpr double kTrianglesPerArea = 6.0;   // Of ground, in cells²: 3 on a smooth slope, 5.6 to 6.5 measured on rock.
 constexpr double kFewestCells = 8.0;        // Across the shorter side of a region.
 constexpr int kAreaSamples = 256;           // Across each side, for the area of the ground.
 
@@ -29,16 +31,16 @@ double ground_area(const Heightfield& heightfield, const Vec2& lo, const Vec2& h
 
 double triangles(double area, double resolution) { return kTrianglesPerArea * area / (resolution * resolution); }
 
-/// The cell that shows the smallest material's blocks well.
+/// The cell that shows the blocks of every material well: those of the largest best.
 double block_resolution(const Heightfield& heightfield, const StrataFile& strata) {
-  double side = default_tile_side(heightfield);
-  bool first = true;
+  const double default_side = default_tile_side(heightfield);
+  double largest = 0.0, smallest = std::numeric_limits<double>::infinity();
   for (const RockMaterial& material : strata.materials) {
-    const double own = material.tile_side > 0.0 ? material.tile_side : default_tile_side(heightfield);
-    side = first ? own : std::min(side, own);
-    first = false;
+    const double side = material.tile_side > 0.0 ? material.tile_side : default_side;
+    largest = std::max(largest, side);
+    smallest = std::min(smallest, side);
   }
-  return side / (kBlocksPerSide * kCellsPerBlock);
+  return std::min(largest / kCellsPerBlock, smallest / kLeastCellsPerBlock) / kBlocksPerSide;
 }
 
 std::string rectangle(const Vec2& lo, const Vec2& hi) {
