@@ -1,9 +1,10 @@
-/// Nanoseconds a point of rounded polytopes, with and without a relief; counters `ns_point` and `ns_plane_point`.
+/// Time a point of rounded polytopes, with and without a relief: counters `s_point` and `s_plane_point`.
 ///
 /// OUTCROP_BENCH_MODEL=<file> adds a model of many blocks: first line N and R, then per block the number of planes and, per
 /// plane, nx ny nz d. Its field is the minimum over the blocks.
 #include <benchmark/benchmark.h>
 
+#include <array>
 #include <cstdlib>
 #include <fstream>
 #include <string>
@@ -105,7 +106,38 @@ BENCHMARK(narrowing)->ArgNames({"warp"})->Arg(0)->Arg(1);
   return file ? union_of(std::move(fields)) : nullptr;
 }
 
-/// The model's union, narrowed to each of 8³ bricks of 9³ points, 10 cm apart, around a corner of its cube's middle.
+/// Counts of one descent.
+struct Descent {
+  std::size_t points = 0, bricks = 0;
+};
+
+/// Narrows as a mesher does, halving the box, and evaluates bricks of 9³ points, 10 cm apart, that `bound` cannot exclude.
+void descend(const Field& field, const Box& box, Descent& counts) {
+  constexpr double kBrick = 0.8;
+  const Interval bound = field.bound(box);
+  if (bound.lo > 0.0 || bound.hi < 0.0) return;
+  const FieldPtr narrowed = field.narrow(box);
+  if (box.size().x > 1.5 * kBrick) {
+    const Vec3 half = 0.5 * box.size();
+    for (int child = 0; child < 8; ++child) {
+      const Vec3 lo = box.lo + half * Vec3(child & 1, child >> 1 & 1, child >> 2);
+      descend(*narrowed, {lo, lo + half}, counts);
+    }
+    return;
+  }
+  std::array<double, 729> x, y, z, values;
+  for (int i = 0; i < 729; ++i) {
+    x[i] = box.lo.x + 0.1 * (i % 9);
+    y[i] = box.lo.y + 0.1 * (i / 9 % 9);
+    z[i] = box.lo.z + 0.1 * (i / 81);
+  }
+  narrowed->values({x, y, z}, values, {});
+  benchmark::DoNotOptimize(values.data());
+  counts.points += values.size();
+  ++counts.bricks;
+}
+
+/// The model's cube of 25.6 m in bricks: everything from the root to the values, per point evaluated.
 void model(benchmark::State& state) {
   const char* const path = std::getenv("OUTCROP_BENCH_MODEL");
   const FieldPtr field = path ? read_model(path, state.range(0) ? rough_warp() : Warp{}) : nullptr;
@@ -113,33 +145,11 @@ void model(benchmark::State& state) {
     state.SkipWithError("set OUTCROP_BENCH_MODEL to a model file");
     return;
   }
-  std::size_t points = 0, bricks = 0, skipped = 0;
-  for (auto _ : state)
-    for (int brick = 0; brick < 512; ++brick) {
-      const Vec3 lo = 0.8 * Vec3(brick % 8, brick / 8 % 8, brick / 64) - Vec3(3.2);
-      const Box box{lo, lo + Vec3(0.8)};
-      ++bricks;
-      const Interval bound = field->bound(box);
-      if (bound.lo > 0.0 || bound.hi < 0.0) {
-        ++skipped;
-        continue;
-      }
-      const FieldPtr narrowed = field->narrow(box);
-      std::vector<double> x, y, z;
-      for (int k = 0; k < 9; ++k)
-        for (int j = 0; j < 9; ++j)
-          for (int i = 0; i < 9; ++i) {
-            x.push_back(lo.x + 0.1 * i);
-            y.push_back(lo.y + 0.1 * j);
-            z.push_back(lo.z + 0.1 * k);
-          }
-      std::vector<double> values(x.size());
-      narrowed->values({x, y, z}, values, {});
-      benchmark::DoNotOptimize(values.data());
-      points += x.size();
-    }
-  state.counters["s_point"] = benchmark::Counter(static_cast<double>(points), benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
-  state.counters["skipped"] = static_cast<double>(skipped) / static_cast<double>(bricks);
+  Descent counts;
+  for (auto _ : state) descend(*field, {Vec3(-12.8), Vec3(12.8)}, counts);
+  state.counters["s_point"] =
+      benchmark::Counter(static_cast<double>(counts.points), benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+  state.counters["bricks"] = static_cast<double>(counts.bricks) / static_cast<double>(state.iterations());
 }
 BENCHMARK(model)->ArgNames({"warp"})->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
 
