@@ -1,7 +1,7 @@
 /// Time a point of rounded polytopes, with and without a relief: counters `s_point` and `s_plane_point`.
 ///
-/// OUTCROP_BENCH_MODEL=<file> adds a model of many blocks: first line N and R, then per block the number of planes and, per
-/// plane, nx ny nz d. Its field is the minimum over the blocks.
+/// OUTCROP_BENCH_MODEL=<file> adds a model of many blocks: first line N and R, then per block the number of planes and,
+/// per plane, nx ny nz d. Its field is the minimum over the blocks.
 #include <benchmark/benchmark.h>
 
 #include <array>
@@ -56,20 +56,26 @@ void run(benchmark::State& state, const PolytopeKernel& kernel, const Lattice& p
   std::vector<float> values(points.x.size());
   std::vector<Vec3f> directions(points.x.size());
   for (auto _ : state) {
-    kernel.values(values.size(), points.x.data(), points.y.data(), points.z.data(), values.data(), gradients ? directions.data() : nullptr);
+    kernel.values(values.size(), points.x.data(), points.y.data(), points.z.data(), values.data(),
+                  gradients ? directions.data() : nullptr);
     benchmark::DoNotOptimize(values.data());
   }
   const auto inverted = benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert;
   state.counters["s_point"] = benchmark::Counter(static_cast<double>(values.size()), inverted);
-  state.counters["s_plane_point"] = benchmark::Counter(static_cast<double>(values.size() * kernel.plane_count()), inverted);
+  state.counters["s_plane_point"] =
+      benchmark::Counter(static_cast<double>(values.size() * kernel.plane_count()), inverted);
   state.counters["planes"] = static_cast<double>(kernel.plane_count());
 }
 
 /// All planes, points everywhere in the block. Arguments: planes, warp, gradients.
 void whole_block(benchmark::State& state) {
-  run(state, random_kernel(static_cast<int>(state.range(0)), state.range(1) ? rough_warp() : Warp{}), Lattice(20, 4.0, Vec3(0.0)), state.range(2));
+  run(state, random_kernel(static_cast<int>(state.range(0)), state.range(1) ? rough_warp() : Warp{}),
+      Lattice(20, 4.0, Vec3(0.0)), state.range(2));
 }
-BENCHMARK(whole_block)->ArgNames({"planes", "warp", "gradients"})->ArgsProduct({{20}, {0, 1}, {0, 1}})->ArgsProduct({{3}, {0, 1}, {0}});
+BENCHMARK(whole_block)
+    ->ArgNames({"planes", "warp", "gradients"})
+    ->ArgsProduct({{20}, {0, 1}, {0, 1}})
+    ->ArgsProduct({{3}, {0, 1}, {0}});
 
 /// A brick of 9³ points, 10 cm apart, on the surface: narrowed, then evaluated.
 void narrowed_brick(benchmark::State& state) {
@@ -111,7 +117,8 @@ struct Descent {
   std::size_t points = 0, bricks = 0;
 };
 
-/// Narrows as a mesher does, halving the box, and evaluates bricks of 9³ points, 10 cm apart, that `bound` cannot exclude.
+/// Narrows as a mesher does, halving the box, and evaluates bricks of 9³ points, 10 cm apart, that `bound` cannot
+/// exclude.
 void descend(const Field& field, const Box& box, Descent& counts) {
   constexpr double kBrick = 0.8;
   const Interval bound = field.bound(box);

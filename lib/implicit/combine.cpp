@@ -15,12 +15,16 @@ constexpr std::size_t kBlock = 128;  // Points a block: buffers on the stack, on
 
 enum class Side { Smallest, Largest };
 
-/// The fold of smax over some fields, in their order; of smin for Side::Smallest. Radius 0 is the sharp maximum or minimum.
+/// The fold of smax over some fields, in their order; of smin for Side::Smallest. Radius 0 is the sharp maximum or
+/// minimum.
 class FoldField final : public Field {
  public:
   /// @param material  Whose labels hold; null: those of the field that decides.
   FoldField(Side side, double radius, std::vector<FieldPtr> fields, FieldPtr material)
-      : sign_(side == Side::Largest ? 1.0 : -1.0), radius_(radius), fields_(std::move(fields)), material_(std::move(material)) {
+      : sign_(side == Side::Largest ? 1.0 : -1.0),
+        radius_(radius),
+        fields_(std::move(fields)),
+        material_(std::move(material)) {
     for (const FieldPtr& field : fields_) lipschitz_ = std::max(lipschitz_, field->lipschitz());
   }
 
@@ -57,7 +61,8 @@ class FoldField final : public Field {
   [[nodiscard]] FieldPtr narrow(const Box& box) const override {
     std::vector<FieldPtr> kept = relevant(box);
     bool changed = kept.size() < fields_.size();
-    FieldPtr material = material_ && !std::count(kept.begin(), kept.end(), material_) ? material_->narrow(box) : nullptr;
+    FieldPtr material =
+        material_ && !std::count(kept.begin(), kept.end(), material_) ? material_->narrow(box) : nullptr;
     for (FieldPtr& field : kept) {
       FieldPtr narrowed = field->narrow(box);
       if (field == material_) material = narrowed;
@@ -203,7 +208,9 @@ class Offset final : public UnaryField {
   }
 
  private:
-  [[nodiscard]] FieldPtr with(FieldPtr field) const override { return std::make_shared<Offset>(std::move(field), thickness_); }
+  [[nodiscard]] FieldPtr with(FieldPtr field) const override {
+    return std::make_shared<Offset>(std::move(field), thickness_);
+  }
   double thickness_;
 };
 
@@ -224,7 +231,9 @@ class Shell final : public UnaryField {
   }
 
  private:
-  [[nodiscard]] FieldPtr with(FieldPtr field) const override { return std::make_shared<Shell>(std::move(field), thickness_); }
+  [[nodiscard]] FieldPtr with(FieldPtr field) const override {
+    return std::make_shared<Shell>(std::move(field), thickness_);
+  }
   double thickness_;
 };
 
@@ -241,7 +250,9 @@ class Labelled final : public UnaryField {
   }
 
  private:
-  [[nodiscard]] FieldPtr with(FieldPtr field) const override { return std::make_shared<Labelled>(std::move(field), label_); }
+  [[nodiscard]] FieldPtr with(FieldPtr field) const override {
+    return std::make_shared<Labelled>(std::move(field), label_);
+  }
   Label label_;
 };
 
@@ -259,7 +270,9 @@ class Transformed final : public UnaryField {
     for (Vec3& g : gradients) g = world_from_local_ * g;
   }
   void labels(const Points& points, std::span<Label> labels) const noexcept override {
-    for_each_block(points, [&](std::size_t first, const Points& local) { field().labels(local, labels.subspan(first, local.size())); });
+    for_each_block(points, [&](std::size_t first, const Points& local) {
+      field().labels(local, labels.subspan(first, local.size()));
+    });
   }
   [[nodiscard]] Interval bound(const Box& box) const noexcept override {
     const Interval b = field().bound(local_box(box));
@@ -293,7 +306,9 @@ class Transformed final : public UnaryField {
     }
   }
 
-  [[nodiscard]] Vec3 local_point(const Vec3& p) const noexcept { return (p - translation_) * world_from_local_ / scale_; }
+  [[nodiscard]] Vec3 local_point(const Vec3& p) const noexcept {
+    return (p - translation_) * world_from_local_ / scale_;
+  }
   [[nodiscard]] Box local_box(const Box& box) const noexcept {
     const Vec3 reach = absolute(glm::transpose(world_from_local_)) * (0.5 * box.size()) / scale_;
     return around(local_point(box.centre()), reach, (glm::abs(box.centre()) + glm::abs(translation_)) / scale_);
@@ -303,7 +318,9 @@ class Transformed final : public UnaryField {
     const Vec3 size = glm::abs(centre) + reach + glm::abs(largest);
     return Box{centre - reach, centre + reach}.grown(1e-14 * (size.x + size.y + size.z));
   }
-  [[nodiscard]] static Mat3 absolute(const Mat3& m) noexcept { return {glm::abs(m[0]), glm::abs(m[1]), glm::abs(m[2])}; }
+  [[nodiscard]] static Mat3 absolute(const Mat3& m) noexcept {
+    return {glm::abs(m[0]), glm::abs(m[1]), glm::abs(m[2])};
+  }
 
   Mat3 world_from_local_;  ///< The rotation; scale and translation follow.
   double scale_;
@@ -329,8 +346,12 @@ class Transformed final : public UnaryField {
 FieldPtr union_of(std::vector<FieldPtr> fields) { return fold_of(Side::Smallest, 0.0, std::move(fields)); }
 FieldPtr intersection_of(std::vector<FieldPtr> fields) { return fold_of(Side::Largest, 0.0, std::move(fields)); }
 FieldPtr difference_of(FieldPtr a, FieldPtr b) { return smooth_difference_of(std::move(a), std::move(b), 0.0); }
-FieldPtr smooth_union_of(std::vector<FieldPtr> fields, double radius) { return fold_of(Side::Smallest, radius, std::move(fields)); }
-FieldPtr smooth_intersection_of(std::vector<FieldPtr> fields, double radius) { return fold_of(Side::Largest, radius, std::move(fields)); }
+FieldPtr smooth_union_of(std::vector<FieldPtr> fields, double radius) {
+  return fold_of(Side::Smallest, radius, std::move(fields));
+}
+FieldPtr smooth_intersection_of(std::vector<FieldPtr> fields, double radius) {
+  return fold_of(Side::Largest, radius, std::move(fields));
+}
 FieldPtr smooth_difference_of(FieldPtr a, FieldPtr b, double radius) {
   return fold_of(Side::Largest, radius, {std::move(a), complement(std::move(b))});
 }

@@ -59,21 +59,26 @@ class RangePyramid {
     while (base.ranges.size() > kMostCubes) base = shape(voxels, ++log2);
     const int leaves = 1 << (log2 - 3);  // Along a cube's edge.
     const auto slab = static_cast<std::size_t>(base.size[0]) * base.size[1];
-    parallel_for(base.size[2], [&](std::size_t k) {
-      const auto accessor = grid.getConstUnsafeAccessor();
-      for (std::size_t cube = k * slab; cube < (k + 1) * slab; ++cube) {
-        const Coord first = base.cube(cube);
-        for (int leaf = 0; leaf < leaves * leaves * leaves; ++leaf) {
-          const Coord at(leaf % leaves, leaf / leaves % leaves, leaf / leaves / leaves);
-          const Coord corner((first.x() << log2) + kLeaf * at.x(), (first.y() << log2) + kLeaf * at.y(), (first.z() << log2) + kLeaf * at.z());
-          if (const auto* const node = accessor.probeConstLeaf(corner)) {
-            for (openvdb::Index i = 0; i < FloatTree::LeafNodeType::SIZE; ++i) base.ranges[cube].include(node->getValue(i));
-          } else {
-            base.ranges[cube].include(accessor.getValue(corner));
+    parallel_for(
+        base.size[2],
+        [&](std::size_t k) {
+          const auto accessor = grid.getConstUnsafeAccessor();
+          for (std::size_t cube = k * slab; cube < (k + 1) * slab; ++cube) {
+            const Coord first = base.cube(cube);
+            for (int leaf = 0; leaf < leaves * leaves * leaves; ++leaf) {
+              const Coord at(leaf % leaves, leaf / leaves % leaves, leaf / leaves / leaves);
+              const Coord corner((first.x() << log2) + kLeaf * at.x(), (first.y() << log2) + kLeaf * at.y(),
+                                 (first.z() << log2) + kLeaf * at.z());
+              if (const auto* const node = accessor.probeConstLeaf(corner)) {
+                for (openvdb::Index i = 0; i < FloatTree::LeafNodeType::SIZE; ++i)
+                  base.ranges[cube].include(node->getValue(i));
+              } else {
+                base.ranges[cube].include(accessor.getValue(corner));
+              }
+            }
           }
-        }
-      }
-    }, task);
+        },
+        task);
     levels_.push_back(std::move(base));
     // Two cubes along an axis may stay two for ever: those on both sides of index 0.
     while (levels_.back().ranges.size() > 8) levels_.push_back(coarser(levels_.back()));
@@ -104,7 +109,8 @@ class RangePyramid {
     }
     [[nodiscard]] Coord cube(std::size_t index) const {
       const std::size_t across = size.x(), up = size.y();
-      return origin + Coord(static_cast<int>(index % across), static_cast<int>(index / across % up), static_cast<int>(index / across / up));
+      return origin + Coord(static_cast<int>(index % across), static_cast<int>(index / across % up),
+                            static_cast<int>(index / across / up));
     }
   };
 
@@ -122,7 +128,8 @@ class RangePyramid {
     level.origin = fine.origin >> 1;
     level.size = ((fine.origin + fine.size - Coord(1)) >> 1) - level.origin + Coord(1);
     level.ranges.resize(static_cast<std::size_t>(level.size.x()) * level.size.y() * level.size.z());
-    for (std::size_t i = 0; i < fine.ranges.size(); ++i) level.ranges[level.index(fine.cube(i) >> 1)].include(fine.ranges[i]);
+    for (std::size_t i = 0; i < fine.ranges.size(); ++i)
+      level.ranges[level.index(fine.cube(i) >> 1)].include(fine.ranges[i]);
     return level;
   }
 
@@ -172,39 +179,45 @@ class RangePyramid {
   for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf) corners.push_back(leaf->origin());
   constexpr std::size_t kChunk = 256;
   const std::size_t chunks = (corners.size() + kChunk - 1) / kChunk;
-  const std::vector<double> steepest_of = parallel_map(chunks, [&](std::size_t chunk) {
-    constexpr int n = kLeaf + 2;
-    const auto accessor = grid.getConstUnsafeAccessor();
-    std::array<float, n * n * n> v;
-    const auto at = [](int i, int j, int k) { return (k * n + j) * n + i; };
-    double most = 0.0;
-    for (std::size_t c = chunk * kChunk; c < std::min(corners.size(), (chunk + 1) * kChunk); ++c) {
-      for (int k = 0; k < n; ++k)
-        for (int j = 0; j < n; ++j)
-          for (int i = 0; i < n; ++i) v[at(i, j, k)] = accessor.getValue(corners[c].offsetBy(i - 1, j - 1, k - 1));
-      for (int k = 0; k + 1 < n; ++k)
-        for (int j = 0; j + 1 < n; ++j)
-          for (int i = 0; i + 1 < n; ++i) {
-            float x = 0.0f, y = 0.0f, z = 0.0f;
-            for (int a = 0; a < 2; ++a)
-              for (int b = 0; b < 2; ++b) {
-                x = std::max(x, std::abs(v[at(i + 1, j + a, k + b)] - v[at(i, j + a, k + b)]));
-                y = std::max(y, std::abs(v[at(i + a, j + 1, k + b)] - v[at(i + a, j, k + b)]));
-                z = std::max(z, std::abs(v[at(i + a, j + b, k + 1)] - v[at(i + a, j + b, k)]));
+  const std::vector<double> steepest_of = parallel_map(
+      chunks,
+      [&](std::size_t chunk) {
+        constexpr int n = kLeaf + 2;
+        const auto accessor = grid.getConstUnsafeAccessor();
+        std::array<float, n * n * n> v;
+        const auto at = [](int i, int j, int k) { return (k * n + j) * n + i; };
+        double most = 0.0;
+        for (std::size_t c = chunk * kChunk; c < std::min(corners.size(), (chunk + 1) * kChunk); ++c) {
+          for (int k = 0; k < n; ++k)
+            for (int j = 0; j < n; ++j)
+              for (int i = 0; i < n; ++i) v[at(i, j, k)] = accessor.getValue(corners[c].offsetBy(i - 1, j - 1, k - 1));
+          for (int k = 0; k + 1 < n; ++k)
+            for (int j = 0; j + 1 < n; ++j)
+              for (int i = 0; i + 1 < n; ++i) {
+                float x = 0.0f, y = 0.0f, z = 0.0f;
+                for (int a = 0; a < 2; ++a)
+                  for (int b = 0; b < 2; ++b) {
+                    x = std::max(x, std::abs(v[at(i + 1, j + a, k + b)] - v[at(i, j + a, k + b)]));
+                    y = std::max(y, std::abs(v[at(i + a, j + 1, k + b)] - v[at(i + a, j, k + b)]));
+                    z = std::max(z, std::abs(v[at(i + a, j + b, k + 1)] - v[at(i + a, j + b, k)]));
+                  }
+                most = std::max(most, std::sqrt(double{x} * x + double{y} * y + double{z} * z));
               }
-            most = std::max(most, std::sqrt(double{x} * x + double{y} * y + double{z} * z));
-          }
-    }
-    return most;
-  }, task);
-  return std::accumulate(steepest_of.begin(), steepest_of.end(), tiles, [](double a, double b) { return std::max(a, b); });
+        }
+        return most;
+      },
+      task);
+  return std::accumulate(steepest_of.begin(), steepest_of.end(), tiles,
+                         [](double a, double b) { return std::max(a, b); });
 }
 
 /// A float grid, interpolated trilinearly; its background outside of what it stores.
 class GridField final : public Field {
  public:
-  /// @throws ParameterError when the grid is empty, not finite, or mapped to the world by more than an affine transform.
-  explicit GridField(FloatGrid::ConstPtr grid, const Task& task = {}) : grid_(std::move(grid)), voxels_(differing_voxels(*grid_)) {
+  /// @throws ParameterError when the grid is empty, not finite, or mapped to the world by more than an affine
+  /// transform.
+  explicit GridField(FloatGrid::ConstPtr grid, const Task& task = {})
+      : grid_(std::move(grid)), voxels_(differing_voxels(*grid_)) {
     require(!voxels_.empty(), "grid", "at least one voxel that differs from the background", "none");
     require(grid_->transform().isLinear(), "grid", "a linear transform", grid_->transform().mapType());
     require(std::isfinite(grid_->background()), "grid", "a finite background", grid_->background());
@@ -243,7 +256,8 @@ class GridField final : public Field {
       const double low = (1.0 - f.y) * row[0][0] + f.y * row[0][1], high = (1.0 - f.y) * row[1][0] + f.y * row[1][1];
       values[i] = (1.0 - f.z) * low + f.z * high;
       if (gradients.empty()) continue;
-      const Vec3 by_index{(1.0 - f.z) * ((1.0 - f.y) * slope[0][0] + f.y * slope[0][1]) + f.z * ((1.0 - f.y) * slope[1][0] + f.y * slope[1][1]),
+      const Vec3 by_index{(1.0 - f.z) * ((1.0 - f.y) * slope[0][0] + f.y * slope[0][1]) +
+                              f.z * ((1.0 - f.y) * slope[1][0] + f.y * slope[1][1]),
                           (1.0 - f.z) * (row[0][1] - row[0][0]) + f.z * (row[1][1] - row[1][0]), high - low};
       gradients[i] = by_index * index_from_world_;
     }
@@ -279,8 +293,8 @@ class GridField final : public Field {
   }
 
  private:
-  /// Beyond the voxels that differ there is background alone, so the nearest of them stands for what lies beyond; indices
-  /// of far points would not fit an int.
+  /// Beyond the voxels that differ there is background alone, so the nearest of them stands for what lies beyond;
+  /// indices of far points would not fit an int.
   [[nodiscard]] Vec3 inside_range(const Vec3& index) const noexcept {
     return glm::clamp(index, Vec3(voxels_.min().x(), voxels_.min().y(), voxels_.min().z()),
                       Vec3(voxels_.max().x(), voxels_.max().y(), voxels_.max().z()));
@@ -290,7 +304,8 @@ class GridField final : public Field {
   [[nodiscard]] double stretch() const noexcept {
     const Mat3 square = glm::transpose(index_from_world_) * index_from_world_;
     double most = 0.0;
-    for (int row = 0; row < 3; ++row) most = std::max(most, std::abs(square[0][row]) + std::abs(square[1][row]) + std::abs(square[2][row]));
+    for (int row = 0; row < 3; ++row)
+      most = std::max(most, std::abs(square[0][row]) + std::abs(square[1][row]) + std::abs(square[2][row]));
     return std::sqrt(most);
   }
 
@@ -347,7 +362,8 @@ class BandSampler {
     if (size == kLeaf) return evaluate(*narrowed, corner, bricks);
     const int half = size / 2;
     for (int child = 0; child < 8; ++child)
-      sample(*narrowed, corner.offsetBy(half * (child & 1), half * (child >> 1 & 1), half * (child >> 2)), half, bricks);
+      sample(*narrowed, corner.offsetBy(half * (child & 1), half * (child >> 1 & 1), half * (child >> 2)), half,
+             bricks);
   }
 
  private:
@@ -397,8 +413,10 @@ class StreamArchive final : public openvdb::io::Archive {
     for (const char c : result) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001B3ull;
     constexpr char kDigits[] = "0123456789abcdef";
     for (std::size_t i = 0; i < tag.size(); ++i) {
-      if (tag[i] == '-') result[at + i] = '-';
-      else result[at + i] = kDigits[hash >> (4 * (i % 16)) & 15];
+      if (tag[i] == '-')
+        result[at + i] = '-';
+      else
+        result[at + i] = kDigits[hash >> (4 * (i % 16)) & 15];
     }
     return result;
   }
@@ -424,8 +442,8 @@ FieldPtr read_vdb(const std::filesystem::path& path, const Task& task) {
   }
 }
 
-FieldPtr mesh_distance(std::span<const Vec3> vertices, std::span<const std::array<std::uint32_t, 3>> triangles, double voxel,
-                       double half_width, const Task& task) {
+FieldPtr mesh_distance(std::span<const Vec3> vertices, std::span<const std::array<std::uint32_t, 3>> triangles,
+                       double voxel, double half_width, const Task& task) {
   require(voxel > 0.0 && std::isfinite(voxel), "voxel", "> 0 and finite", voxel);
   require(half_width >= 1.0 && half_width <= 1000.0, "half_width", "1 to 1000 voxels", half_width);
   require(!vertices.empty() && !triangles.empty(), "mesh", "at least one triangle", "none");
@@ -457,8 +475,8 @@ FieldPtr mesh_distance(std::span<const Vec3> vertices, std::span<const std::arra
   return std::make_shared<GridField>(grid, task);
 }
 
-void write_vdb(const std::filesystem::path& path, const Field& field, const Box& region, double voxel, const Vec3& origin,
-               double half_width, const Task& task) {
+void write_vdb(const std::filesystem::path& path, const Field& field, const Box& region, double voxel,
+               const Vec3& origin, double half_width, const Task& task) {
   require(voxel > 0.0 && std::isfinite(voxel), "voxel", "> 0 and finite", voxel);
   require(half_width >= 1.0 && half_width <= 1000.0, "half_width", "1 to 1000 voxels", half_width);
   OutputFile file(path);
@@ -469,17 +487,22 @@ void write_vdb(const std::filesystem::path& path, const Field& field, const Box&
   constexpr int kBlock = 64;
   const Vec3 lo = glm::floor((region.lo - origin - Vec3(band)) / (kBlock * voxel));
   const Vec3 count = glm::floor((region.hi - origin + Vec3(band)) / (kBlock * voxel)) - lo + Vec3(1.0);
-  require(count.x * count.y * count.z < 1e8, "voxel", "large enough for a region of fewer than 1e8 blocks of 64^3 voxels", voxel);
+  require(count.x * count.y * count.z < 1e8, "voxel",
+          "large enough for a region of fewer than 1e8 blocks of 64^3 voxels", voxel);
   const auto nx = static_cast<std::size_t>(count.x), ny = static_cast<std::size_t>(count.y);
   const std::size_t blocks = nx * ny * static_cast<std::size_t>(count.z);
   task.begin("sampling the level set", blocks);
-  const std::vector<std::vector<Brick>> found = parallel_map(blocks, [&](std::size_t block) {
-    const Vec3 at = (lo + Vec3(block % nx, block / nx % ny, block / nx / ny)) * double{kBlock};
-    std::vector<Brick> bricks;
-    sampler.sample(field, Coord(static_cast<int>(at.x), static_cast<int>(at.y), static_cast<int>(at.z)), kBlock, bricks);
-    task.advance();
-    return bricks;
-  }, task);
+  const std::vector<std::vector<Brick>> found = parallel_map(
+      blocks,
+      [&](std::size_t block) {
+        const Vec3 at = (lo + Vec3(block % nx, block / nx % ny, block / nx / ny)) * double{kBlock};
+        std::vector<Brick> bricks;
+        sampler.sample(field, Coord(static_cast<int>(at.x), static_cast<int>(at.y), static_cast<int>(at.z)), kBlock,
+                       bricks);
+        task.advance();
+        return bricks;
+      },
+      task);
 
   const auto background = static_cast<float>(band);
   const FloatGrid::Ptr grid = FloatGrid::create(background);
@@ -495,8 +518,10 @@ void write_vdb(const std::filesystem::path& path, const Field& field, const Box&
       auto* const leaf = grid->tree().touchLeaf(brick.origin);
       for (openvdb::Index i = 0; i < brick.values.size(); ++i) {
         const float v = brick.values[i];
-        if (std::abs(v) < background) leaf->setValueOn(i, v);
-        else leaf->setValueOff(i, v);
+        if (std::abs(v) < background)
+          leaf->setValueOn(i, v);
+        else
+          leaf->setValueOff(i, v);
       }
     }
   task.check();

@@ -29,8 +29,8 @@ using Vector [[gnu::vector_size(kWidth * sizeof(float))]] = float;
 /// Order 0: values; 1: and gradients; 2: and Hessians. The same operations for the lower orders, so the same bits.
 /// Chains · 16 points at `first` of x, y, z; the accumulators stay in registers over all planes.
 template <int Order, int Chains>
-[[gnu::always_inline]] inline void fold_some(const PlaneView& planes, int first, const float* x, const float* y, const float* z,
-                                             Fold& out) {
+[[gnu::always_inline]] inline void fold_some(const PlaneView& planes, int first, const float* x, const float* y,
+                                             const float* z, Fold& out) {
   const float inverse = planes.rounding > 0.0f ? 1.0f / planes.rounding : kSharp;
   const float sixth = planes.rounding / 6.0f;
   Vector px[Chains], py[Chains], pz[Chains], c[Chains], gx[Chains], gy[Chains], gz[Chains], bend[Chains][6];
@@ -88,11 +88,13 @@ template <int Order, int Chains>
 }
 
 template <int Order>
-[[gnu::always_inline]] inline void fold(const PlaneView& planes, int n, const float* x, const float* y, const float* z, Fold& out) {
+[[gnu::always_inline]] inline void fold(const PlaneView& planes, int n, const float* x, const float* y, const float* z,
+                                        Fold& out) {
   // Hessians need so many registers that two chains are faster than four.
   constexpr int kChains = Order >= 2 ? 2 : 4;
   if (n == kLanes) {
-    for (int first = 0; first < kLanes; first += kChains * kWidth) fold_some<Order, kChains>(planes, first, x, y, z, out);
+    for (int first = 0; first < kLanes; first += kChains * kWidth)
+      fold_some<Order, kChains>(planes, first, x, y, z, out);
     return;
   }
   alignas(64) Lane px, py, pz;  // The last vector may reach beyond the caller's points.
@@ -190,16 +192,17 @@ void blend(const Relief& relief, int n, const Lane (&phase)[3], const Weights& w
     blended[i] = 1.0f;
     if (w.fade[i] <= 0.0f) continue;
     const Four along_x = columns(column_x.place[i]), along_y = columns(column_y.place[i]);
-    const Four sum = along_y * (w.share[0][i] * rows(pixels, column_y, row_z, i)) +
-                     along_x * (w.share[1][i] * rows(pixels, column_x, row_z, i) + w.share[2][i] * rows(pixels, column_x, row_y, i));
+    const Four sum =
+        along_y * (w.share[0][i] * rows(pixels, column_y, row_z, i)) +
+        along_x * (w.share[1][i] * rows(pixels, column_x, row_z, i) + w.share[2][i] * rows(pixels, column_x, row_y, i));
     const float total = (sum[0] + sum[2]) + (sum[1] + sum[3]);
     blended[i] = total < 1.0f ? total : 1.0f;
   }
 }
 
 /// The derivatives of the blend.
-void blend_slopes(const Relief& relief, int n, const Lane (&phase)[3], const Lane (&g)[3], const Weights& w, const Lane& blended,
-                  Carving& out) noexcept {
+void blend_slopes(const Relief& relief, int n, const Lane (&phase)[3], const Lane (&g)[3], const Weights& w,
+                  const Lane& blended, Carving& out) noexcept {
   for (int i = 0; i < n; ++i) {
     for (int axis = 0; axis < 3; ++axis) out.blend_by_g[axis][i] = out.blend_by_p[axis][i] = 0.0f;
     if (w.fade[i] <= 0.0f) continue;
@@ -224,7 +227,8 @@ void fold_values(const PlaneView& planes, int n, const float* x, const float* y,
   fold<0>(planes, n, x, y, z, out);
 }
 OUTCROP_SIMD_CLONES
-void fold_gradients(const PlaneView& planes, int n, const float* x, const float* y, const float* z, Fold& out) noexcept {
+void fold_gradients(const PlaneView& planes, int n, const float* x, const float* y, const float* z,
+                    Fold& out) noexcept {
   fold<1>(planes, n, x, y, z, out);
 }
 OUTCROP_SIMD_CLONES

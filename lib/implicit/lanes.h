@@ -27,14 +27,14 @@ struct PlaneView {
   float rounding;
 };
 
-/// The fold of smax over the planes, in their order, at n <= kLanes points. A point's bits do not depend on n, on how much
-/// is asked for, or on the instruction set. `out` is written in steps of 16 points.
+/// The fold of smax over the planes, in their order, at n <= kLanes points. A point's bits do not depend on n, on how
+/// much is asked for, or on the instruction set. `out` is written in steps of 16 points.
 void fold_values(const PlaneView& planes, int n, const float* x, const float* y, const float* z, Fold& out) noexcept;
 void fold_gradients(const PlaneView& planes, int n, const float* x, const float* y, const float* z, Fold& out) noexcept;
 void fold_hessians(const PlaneView& planes, int n, const float* x, const float* y, const float* z, Fold& out) noexcept;
 
-/// Where |∇c| is below `kFadeStart` nothing is carved; above `kFadeEnd` all is. A right-angled edge has |∇c| ≥ 1/√2 and is
-/// carved in full; the middle of a thin block, where opposite faces cancel, is not.
+/// Where |∇c| is below `kFadeStart` nothing is carved; above `kFadeEnd` all is. A right-angled edge has |∇c| ≥ 1/√2 and
+/// is carved in full; the middle of a thin block, where opposite faces cancel, is not.
 inline constexpr float kFadeStart = 0.2f;
 inline constexpr float kFadeEnd = 0.7f;
 
@@ -43,14 +43,15 @@ struct Carving {
   Lane depth;  ///< D = amplitude · fade(|g|) · (1 − blend), metres, in [0, amplitude].
   Lane step;   ///< D / |g|: the warped point is p + step · g.
   // The rest only with slopes.
-  Lane length;           ///< |g|.
-  Lane fade_gain;        ///< amplitude · fade'(|g|) · (1 − blend).
-  Lane blend_gain;       ///< −amplitude · fade(|g|).
-  Lane blend_by_g[3];    ///< ∂ blend / ∂ g.
-  Lane blend_by_p[3];    ///< ∂ blend / ∂ p at fixed g, 1/m.
+  Lane length;         ///< |g|.
+  Lane fade_gain;      ///< amplitude · fade'(|g|) · (1 − blend).
+  Lane blend_gain;     ///< −amplitude · fade(|g|).
+  Lane blend_by_g[3];  ///< ∂ blend / ∂ g.
+  Lane blend_by_p[3];  ///< ∂ blend / ∂ p at fixed g, 1/m.
 };
 
-/// The depth at n <= kLanes points whose unwarped gradients are `gradient`; the relief is looked up at origin + (x, y, z).
+/// The depth at n <= kLanes points whose unwarped gradients are `gradient`; the relief is looked up at origin + (x, y,
+/// z).
 void carve(const Warp& warp, const Vec3& origin, int n, const float* x, const float* y, const float* z,
            const Lane (&gradient)[3], bool slopes, Carving& out) noexcept;
 

@@ -14,8 +14,8 @@ namespace {
 // Gradient noise with unit lattice gradients and the quintic fade of Perlin 2002, scaled to [−1, 1]. Its weights give
 // |n| ≤ √(Σ w |f − c|²) ≤ √3/2, reached in the middle of a cell.
 constexpr double kScale = 1.1547005383792517;  // 2 / √3.
-// Largest |∇n| before scaling: the maximum, over places in the cell and directions v, of Σ |w_c v + (∇w_c · v) (f − c)| is
-// 2.7923, in the middle of a cell along an axis (searched on a lattice of 21³ places and 1 200 directions).
+// Largest |∇n| before scaling: the maximum, over places in the cell and directions v, of Σ |w_c v + (∇w_c · v) (f − c)|
+// is 2.7923, in the middle of a cell along an axis (searched on a lattice of 21³ places and 1 200 directions).
 constexpr double kSlope = 2.8;
 
 /// n and its gradient.
@@ -51,8 +51,9 @@ struct Noise {
   Noise result;
   for (int corner = 0; corner < 8; ++corner) {
     const int at[3] = {corner & 1, corner >> 1 & 1, corner >> 2};
-    const Vec3 g = lattice_gradient(static_cast<std::int64_t>(cell.x) + at[0], static_cast<std::int64_t>(cell.y) + at[1],
-                                    static_cast<std::int64_t>(cell.z) + at[2], seed);
+    const Vec3 g =
+        lattice_gradient(static_cast<std::int64_t>(cell.x) + at[0], static_cast<std::int64_t>(cell.y) + at[1],
+                         static_cast<std::int64_t>(cell.z) + at[2], seed);
     const double ramp = glm::dot(g, f - Vec3(at[0], at[1], at[2]));
     Vec3 weight, slope;
     for (int axis = 0; axis < 3; ++axis) {
@@ -61,7 +62,8 @@ struct Noise {
     }
     const double w = weight.x * weight.y * weight.z;
     result.value += w * ramp;
-    result.gradient += w * g + ramp * Vec3(slope.x * weight.y * weight.z, weight.x * slope.y * weight.z, weight.x * weight.y * slope.z);
+    result.gradient += w * g + ramp * Vec3(slope.x * weight.y * weight.z, weight.x * slope.y * weight.z,
+                                           weight.x * weight.y * slope.z);
   }
   return {kScale * result.value, kScale * result.gradient};
 }

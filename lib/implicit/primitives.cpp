@@ -44,7 +44,9 @@ void require_finite(const Vec3& v, std::string_view name) {
   for (int axis = 0; axis < 3; ++axis) require(std::isfinite(v[axis]), name, "finite", v[axis]);
 }
 
-void require_positive(double v, std::string_view name) { require(v > 0.0 && std::isfinite(v), name, "> 0 and finite", v); }
+void require_positive(double v, std::string_view name) {
+  require(v > 0.0 && std::isfinite(v), name, "> 0 and finite", v);
+}
 
 /// v / |v|, or any unit vector where v is 0.
 [[nodiscard]] Vec3 direction(const Vec3& v) {
@@ -213,7 +215,8 @@ FieldPtr torus(const Vec3& centre, const Vec3& axis, double major_radius, double
   require_finite(axis, "axis");
   require_positive(glm::length(axis), "axis length");
   require_positive(minor_radius, "minor_radius");
-  require(major_radius >= minor_radius && std::isfinite(major_radius), "major_radius", "at least minor_radius", major_radius);
+  require(major_radius >= minor_radius && std::isfinite(major_radius), "major_radius", "at least minor_radius",
+          major_radius);
   return solid(Torus{centre, glm::normalize(axis), major_radius, minor_radius});
 }
 

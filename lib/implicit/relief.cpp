@@ -66,7 +66,8 @@ void Relief::finish(std::vector<float> pixels) {
   for (int j = 0; j < height_ + 3; ++j)
     for (int i = 0; i < stride_; ++i) padded_[static_cast<std::size_t>(j) * stride_ + i] = pixel(i - 1, j - 1);
 
-  // Each derivative of a quadratic B-spline is a mean, with weights ≥ 0, of the differences between the 3 x 3 pixels it sees.
+  // Each derivative of a quadratic B-spline is a mean, with weights ≥ 0, of the differences between the 3 x 3 pixels it
+  // sees.
   const auto near = [&](int i, int j) { return padded_[static_cast<std::size_t>(j + 1) * stride_ + i + 1]; };
   double steepest = 0.0;
   for (int j = 0; j < height_; ++j)
@@ -92,7 +93,8 @@ Relief::Sample Relief::at_phase(float u, float v) const noexcept {
   const float row = v * static_cast<float>(height_);
   const int i = static_cast<int>(column);
   const int j = static_cast<int>(row);
-  const float a = column - static_cast<float>(i), b = row - static_cast<float>(j);  // In [0, 1): ½ is the pixel's centre.
+  const float a = column - static_cast<float>(i),
+              b = row - static_cast<float>(j);  // In [0, 1): ½ is the pixel's centre.
   const float left = 0.5f * (1.0f - a) * (1.0f - a), middle = 0.5f + a * (1.0f - a), right = 0.5f * a * a;
   const float below = 0.5f * (1.0f - b) * (1.0f - b), at = 0.5f + b * (1.0f - b), above = 0.5f * b * b;
   const float* const taps = padded_.data() + static_cast<std::ptrdiff_t>(j) * stride_ + i;

@@ -47,7 +47,9 @@ constexpr double kLargestGain = 5.85;  // max K over t ∈ (0, 1] is 5.844, at t
   return std::max(a, b) + rounding / 6.0 * k * k * k;
 }
 
-[[nodiscard]] Vec3 normal(const PackedPlanes& planes, std::size_t k) { return {planes.nx[k], planes.ny[k], planes.nz[k]}; }
+[[nodiscard]] Vec3 normal(const PackedPlanes& planes, std::size_t k) {
+  return {planes.nx[k], planes.ny[k], planes.nz[k]};
+}
 
 /// A lower bound of |g| for every convex sum g of the normals: how far they reach along their mean direction.
 [[nodiscard]] double least_gradient(const PackedPlanes& planes) {
@@ -61,8 +63,8 @@ constexpr double kLargestGain = 5.85;  // max K over t ∈ (0, 1] is 5.844, at t
 }
 
 /// `largest_weights[i]` bounds the fold weight k of kept plane i, or is empty for "1 each".
-[[nodiscard]] double warped_lipschitz(const PackedPlanes& planes, std::span<const double> largest_weights, double rounding,
-                                      const Warp& warp) {
+[[nodiscard]] double warped_lipschitz(const PackedPlanes& planes, std::span<const double> largest_weights,
+                                      double rounding, const Warp& warp) {
   double bend = 0.0;
   for (std::size_t k = 1; k < planes.size(); ++k) {
     double chord_squared = 0.0;
@@ -81,8 +83,8 @@ constexpr double kLargestGain = 5.85;  // max K over t ∈ (0, 1] is 5.844, at t
 }
 
 [[nodiscard]] lanes::PlaneView view(const PackedPlanes& planes, float rounding) {
-  return {planes.nx.data(),          planes.ny.data(), planes.nz.data(), planes.d.data(),
-          static_cast<int>(planes.size()), rounding};
+  return {planes.nx.data(), planes.ny.data(), planes.nz.data(), planes.d.data(), static_cast<int>(planes.size()),
+          rounding};
 }
 
 }  // namespace
@@ -108,11 +110,13 @@ PolytopeKernel::PolytopeKernel(std::span<const Plane> planes, double rounding, W
     : rounding_(static_cast<float>(rounding)), warp_(std::move(warp)), relief_origin_(relief_origin) {
   constexpr double kUnitTolerance = 1e-5;
   require(!planes.empty(), "planes", "at least 1", 0.0);
-  require(rounding == 0.0 || (rounding >= 1e-6 && std::isfinite(rounding)), "rounding", "0, or at least 1e-6 m", rounding);
+  require(rounding == 0.0 || (rounding >= 1e-6 && std::isfinite(rounding)), "rounding", "0, or at least 1e-6 m",
+          rounding);
   require(warp_.amplitude >= 0.0 && std::isfinite(warp_.amplitude), "amplitude", ">= 0 and finite", warp_.amplitude);
   require(!warp_.active() || rounding > 0.0, "rounding", "> 0 where a relief is carved", rounding);
   for (const Plane& plane : planes) {
-    require(std::abs(glm::length(plane.normal) - 1.0) < kUnitTolerance, "normal", "a unit vector", glm::length(plane.normal));
+    require(std::abs(glm::length(plane.normal) - 1.0) < kUnitTolerance, "normal", "a unit vector",
+            glm::length(plane.normal));
     require(std::isfinite(plane.offset), "offset", "finite", plane.offset);
     planes_.push_back(plane);
   }
@@ -168,11 +172,13 @@ void PolytopeKernel::warped(int n, const float* x, const float* y, const float* 
   for (int i = 0; i < n; ++i) {
     // ∇b = G + (u·G) ∇D + D H (I − u uᵀ) G / t, with everything that H multiplies gathered into one vector.
     const Vec3f far{there.gradient[0][i], there.gradient[1][i], there.gradient[2][i]};
-    const Vec3f unit = Vec3f{here.gradient[0][i], here.gradient[1][i], here.gradient[2][i]} * (1.0f / carving.length[i]);
+    const Vec3f unit =
+        Vec3f{here.gradient[0][i], here.gradient[1][i], here.gradient[2][i]} * (1.0f / carving.length[i]);
     const Vec3f by_g{carving.blend_by_g[0][i], carving.blend_by_g[1][i], carving.blend_by_g[2][i]};
     const Vec3f by_p{carving.blend_by_p[0][i], carving.blend_by_p[1][i], carving.blend_by_p[2][i]};
     const float along = glm::dot(unit, far);
-    const Vec3f bent = along * (carving.fade_gain[i] * unit + carving.blend_gain[i] * by_g) + carving.step[i] * (far - along * unit);
+    const Vec3f bent =
+        along * (carving.fade_gain[i] * unit + carving.blend_gain[i] * by_g) + carving.step[i] * (far - along * unit);
     const float xx = here.hessian[0][i], yy = here.hessian[1][i], zz = here.hessian[2][i];
     const float yz = here.hessian[3][i], xz = here.hessian[4][i], xy = here.hessian[5][i];
     gradients[i] = far + along * carving.blend_gain[i] * by_p +
@@ -192,7 +198,8 @@ Interval PolytopeKernel::plane_bound(std::size_t plane, const Box& local) const 
 double PolytopeKernel::rounding_slack(const Box& local) const noexcept {
   // Each plane's sum of four terms and each fold step may be off by an epsilon of the largest number in it.
   double largest = largest_coordinate_sum(local) + rounding_;
-  for (const float offset : planes_.d) largest = std::max(largest, largest_coordinate_sum(local) + std::abs(double{offset}));
+  for (const float offset : planes_.d)
+    largest = std::max(largest, largest_coordinate_sum(local) + std::abs(double{offset}));
   return 1e-6 + static_cast<double>(planes_.size() + 8) * std::numeric_limits<float>::epsilon() * largest;
 }
 
@@ -218,7 +225,8 @@ PolytopeKernel PolytopeKernel::narrow(const Box& local) const {
   const Box reached = warp_.active() ? local.grown(warp_.amplitude) : local;
   const Vec3 centre = reached.centre();
   const double reach = reached.half_diagonal();
-  const double apart = rounding_ + 1e-5 + 2.0 * rounding_slack(reached);  // Beyond this the fold weight is 0 to the bit.
+  const double apart =
+      rounding_ + 1e-5 + 2.0 * rounding_slack(reached);  // Beyond this the fold weight is 0 to the bit.
 
   std::vector<std::size_t> kept{0};
   std::vector<double> largest_weights{0.0};
@@ -252,8 +260,8 @@ PolytopeKernel PolytopeKernel::narrow(const Box& local) const {
 }
 
 std::optional<Box> PolytopeKernel::support() const noexcept {
-  // The corners of the sharp polytope, which contains the rounded one: all triples of planes, within a far box that tells
-  // whether it is bounded.
+  // The corners of the sharp polytope, which contains the rounded one: all triples of planes, within a far box that
+  // tells whether it is bounded.
   constexpr double kFar = 1e7;
   std::vector<Plane> sides;
   for (std::size_t k = 0; k < planes_.size(); ++k) sides.push_back({normal(planes_, k), planes_.d[k]});
@@ -283,7 +291,8 @@ std::optional<Box> PolytopeKernel::support() const noexcept {
   return box.grown(rounding_slack(box));
 }
 
-RoundedPolytope::RoundedPolytope(PolytopeKernel kernel, const Vec3& centre) : kernel_(std::move(kernel)), centre_(centre) {}
+RoundedPolytope::RoundedPolytope(PolytopeKernel kernel, const Vec3& centre)
+    : kernel_(std::move(kernel)), centre_(centre) {}
 
 RoundedPolytope::RoundedPolytope(std::span<const Plane> planes, const Vec3& centre, double rounding, Warp warp)
     : centre_(centre) {

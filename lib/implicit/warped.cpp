@@ -14,8 +14,8 @@ namespace {
 constexpr double kDifferenceStep = 1e-3;  // Metres, for the gradient of the warped field.
 constexpr double kSpreadPerAmplitude = 2.0;
 
-// The Lipschitz constant: b(p) = f(q), q = p + D u, with u the direction of g, g_i = (f(p + h e_i) − f(p − h e_i)) / 2h. f
-// is L-Lipschitz, so each g_i changes by at most L/h a metre, and g by η = √3 L / h. As in rounded_polytope.cpp,
+// The Lipschitz constant: b(p) = f(q), q = p + D u, with u the direction of g, g_i = (f(p + h e_i) − f(p − h e_i)) /
+// 2h. f is L-Lipschitz, so each g_i changes by at most L/h a metre, and g by η = √3 L / h. As in rounded_polytope.cpp,
 // |∇D| ≤ A [F' η + F S + √2 F η / t] and |∇u| ≤ η / t, so b is L (1 + A S + A η K)-Lipschitz with
 // K = max over t of F'(t) + (1 + √2) F(t) / t.
 constexpr double kLargestGain = 6.1;  // K is 6.036, at t = 0.519.
@@ -24,7 +24,8 @@ class WarpedField final : public UnaryField {
  public:
   WarpedField(FieldPtr field, const Warp& warp) : WarpedField(std::move(field), warp, 0.0) {
     lipschitz_ = this->field().lipschitz() *
-                 (1.0 + warp.amplitude * (warp.relief->slope() + std::sqrt(3.0) * this->field().lipschitz() / spread_ * kLargestGain));
+                 (1.0 + warp.amplitude * (warp.relief->slope() +
+                                          std::sqrt(3.0) * this->field().lipschitz() / spread_ * kLargestGain));
   }
 
   void values(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept override {
@@ -39,7 +40,8 @@ class WarpedField final : public UnaryField {
       for (int axis = 0; axis < 3; ++axis) {
         warped_values(block.moved(axis, kDifferenceStep), n, {ahead.data(), n});
         warped_values(block.moved(axis, -kDifferenceStep), n, {behind.data(), n});
-        for (std::size_t i = 0; i < n; ++i) gradients[first + i][axis] = (ahead[i] - behind[i]) / (2.0 * kDifferenceStep);
+        for (std::size_t i = 0; i < n; ++i)
+          gradients[first + i][axis] = (ahead[i] - behind[i]) / (2.0 * kDifferenceStep);
       }
     }
   }
@@ -58,7 +60,9 @@ class WarpedField final : public UnaryField {
   struct Block {
     Values p[3];
 
-    [[nodiscard]] Points points(std::size_t n) const noexcept { return {{p[0].data(), n}, {p[1].data(), n}, {p[2].data(), n}}; }
+    [[nodiscard]] Points points(std::size_t n) const noexcept {
+      return {{p[0].data(), n}, {p[1].data(), n}, {p[2].data(), n}};
+    }
     [[nodiscard]] Block moved(int axis, double by) const noexcept {
       Block result = *this;
       for (double& c : result.p[axis]) c += by;
@@ -67,9 +71,14 @@ class WarpedField final : public UnaryField {
   };
 
   WarpedField(FieldPtr field, const Warp& warp, double lipschitz)
-      : UnaryField(std::move(field)), warp_(warp), spread_(kSpreadPerAmplitude * warp.amplitude), lipschitz_(lipschitz) {}
+      : UnaryField(std::move(field)),
+        warp_(warp),
+        spread_(kSpreadPerAmplitude * warp.amplitude),
+        lipschitz_(lipschitz) {}
 
-  [[nodiscard]] FieldPtr with(FieldPtr field) const override { return std::make_shared<WarpedField>(std::move(field), warp_); }
+  [[nodiscard]] FieldPtr with(FieldPtr field) const override {
+    return std::make_shared<WarpedField>(std::move(field), warp_);
+  }
 
   void warped_values(Block block, std::size_t n, std::span<double> values) const noexcept {
     Values ahead, behind;

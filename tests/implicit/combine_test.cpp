@@ -36,7 +36,8 @@ TEST(Combinations, PassTheContractSharpAndSmooth) {
 }
 
 TEST(Combinations, OfCombinationsPassTheContract) {
-  const FieldPtr all = union_of({difference_of(some_fields()[1], some_fields()[2]), intersection_of({some_fields()[0], some_fields()[3]}),
+  const FieldPtr all = union_of({difference_of(some_fields()[1], some_fields()[2]),
+                                 intersection_of({some_fields()[0], some_fields()[3]}),
                                  smooth_union_of({some_fields()[2], some_fields()[0]}, 0.4)});
   test::check_field_contract(*all, kRegion, 3);
 }
@@ -123,7 +124,8 @@ TEST(Union, NarrowedToOneFieldAsksNoOther) {
 
 TEST(Transformed, PassesTheContractAndMovesItsLabels) {
   for (Seed seed = 1; seed <= 3; ++seed)
-    test::check_field_contract(*transformed(union_of(some_fields()), some_rotation(seed), 0.7, {0.2, -0.3, 0.1}), kRegion, 2);
+    test::check_field_contract(*transformed(union_of(some_fields()), some_rotation(seed), 0.7, {0.2, -0.3, 0.1}),
+                               kRegion, 2);
   const Vec3 far{4.1e5, 5.2e6, 1000.0};
   test::check_field_contract(*transformed(union_of(some_fields()), some_rotation(4), 1.0, far), kRegion.moved(far), 2);
 }
@@ -153,8 +155,10 @@ TEST(OffsetAndShell, PassTheContractAndShiftTheSurface) {
 
 TEST(Support, HoldsForEveryCombinationThatKnowsOne) {
   const std::vector<FieldPtr> bounded{sphere({-1, 0, 0}, 1.2), capsule({-1, -1, 1}, {1, 1, 1}, 0.6)};
-  for (const FieldPtr& field : {union_of(bounded), intersection_of({bounded[0], half_space({{0, 0, 1}, 0.0})}), difference_of(bounded[0], bounded[1]),
-                                transformed(union_of(bounded), some_rotation(1), 0.5, {0.3, 0, 0}), offset(bounded[0], -0.2)}) {
+  for (const FieldPtr& field :
+       {union_of(bounded), intersection_of({bounded[0], half_space({{0, 0, 1}, 0.0})}),
+        difference_of(bounded[0], bounded[1]), transformed(union_of(bounded), some_rotation(1), 0.5, {0.3, 0, 0}),
+        offset(bounded[0], -0.2)}) {
     ASSERT_TRUE(field->support());
     test::for_each_seed(500, [&](Seed seed) {
       Rng rng(seed, "points");
@@ -200,7 +204,8 @@ TEST(Noise, SlopeBoundIsNotExceededByASteepSingleOctave) {
 
 TEST(Warped, PassesTheContractOnFieldsWithAndWithoutCreases) {
   for (const FieldPtr& field : {sphere({0, 0, 0}, 1.5), box_solid({Vec3(-1.2), Vec3(1.4)}), union_of(some_fields())})
-    for (const int pixels : {8, 128}) test::check_field_contract(*warped(field, {test::noise_relief(5, pixels, pixels, 2.0), 0.1}), kRegion, 1);
+    for (const int pixels : {8, 128})
+      test::check_field_contract(*warped(field, {test::noise_relief(5, pixels, pixels, 2.0), 0.1}), kRegion, 1);
 }
 
 TEST(Warped, CarvesTheDepthOfTheReliefWhereTheSurfaceIsFlat) {

@@ -1,7 +1,8 @@
-/// The contract that every Field passes: finite, 1-to-L Lipschitz, `bound` contains, `narrow` equals, a batch equals singles.
+/// The contract that every Field passes: finite, 1-to-L Lipschitz, `bound` contains, `narrow` equals, a batch equals
+/// singles.
 ///
-/// Call `check_field_contract(*field, region)` in a test of the node. `region` is where the field is used: a box that holds
-/// the interesting part of its surface. The field must be owned by a FieldPtr (std::make_shared), as everywhere.
+/// Call `check_field_contract(*field, region)` in a test of the node. `region` is where the field is used: a box that
+/// holds the interesting part of its surface. The field must be owned by a FieldPtr (std::make_shared), as everywhere.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -80,19 +81,22 @@ struct FieldAnswers {
   PointList points;
   for (int i = 0; i < count; ++i) points.push_back(random_point(rng, box));
   for (int corner = 0; corner < 8; ++corner)
-    points.push_back({corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y, corner & 4 ? box.hi.z : box.lo.z});
+    points.push_back(
+        {corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y, corner & 4 ? box.hi.z : box.lo.z});
   points.push_back(box.centre());
   return points;
 }
 
-/// What rounding may add to a difference of two values in the region: fields may compute in floats relative to its scale.
+/// What rounding may add to a difference of two values in the region: fields may compute in floats relative to its
+/// scale.
 [[nodiscard]] inline double rounding_slack(const Box& region) { return 1e-6 * (1.0 + glm::length(region.size())); }
 
 [[nodiscard]] inline bool is_finite(const Vec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-/// Values, gradients, labels and bounds are finite and bounds hold: in the region, far from it, and at coordinates up to 1e7.
+/// Values, gradients, labels and bounds are finite and bounds hold: in the region, far from it, and at coordinates up
+/// to 1e7.
 inline void check_finite(const Field& field, const Box& region, Rng& rng) {
   const double size = glm::length(region.size());
   for (const double reach : {0.0, size, 100.0 * size, 1e4, 1e7}) {
@@ -107,7 +111,8 @@ inline void check_finite(const Field& field, const Box& region, Rng& rng) {
       ASSERT_TRUE(std::isfinite(answers.values[i])) << "value at " << p.x << ' ' << p.y << ' ' << p.z;
       ASSERT_TRUE(is_finite(answers.gradients[i])) << "gradient at " << p.x << ' ' << p.y << ' ' << p.z;
       ASSERT_TRUE(bound.contains(answers.values[i]))
-          << "bound [" << bound.lo << ", " << bound.hi << "] of a box grown by " << reach << " m misses " << answers.values[i];
+          << "bound [" << bound.lo << ", " << bound.hi << "] of a box grown by " << reach << " m misses "
+          << answers.values[i];
     }
   }
 }
@@ -129,7 +134,8 @@ inline void check_lipschitz(const Field& field, const Box& box, double slack, Rn
   for (std::size_t i = 0; i < from.size(); ++i) {
     const double distance = glm::length(from[i] - to[i]);
     ASSERT_LE(std::abs(a.values[i] - b.values[i]), lipschitz * distance + slack)
-        << "L = " << lipschitz << ", |p - q| = " << distance << ", p = " << from[i].x << ' ' << from[i].y << ' ' << from[i].z;
+        << "L = " << lipschitz << ", |p - q| = " << distance << ", p = " << from[i].x << ' ' << from[i].y << ' '
+        << from[i].z;
   }
 }
 

@@ -45,7 +45,8 @@ TEST(Primitives, AreExactDistancesSoThatAStepAlongTheGradientLandsOnTheSurface) 
       Rng rng(seed, "points");
       const Vec3 p = test::random_point(rng, kRegion);
       const double value = solid.field->value(p);
-      if (value < 0.0) return;  // Inside, the step can cross the middle of a corner's bisector only by rounding; outside is the claim.
+      if (value < 0.0)
+        return;  // Inside, the step can cross the middle of a corner's bisector only by rounding; outside is the claim.
       ASSERT_NEAR(solid.field->value(p - value * solid.field->gradient(p)), 0.0, 1e-9);
       ASSERT_NEAR(glm::length(solid.field->gradient(p)), 1.0, 1e-9);
     });

@@ -65,8 +65,10 @@ TEST(Relief, StaysInTheUnitIntervalBelowItsSlopeAndMatchesCentralDifferences) {
       ASSERT_LE(sample.d, 1.0f + 1e-6f);
       ASSERT_LE(std::hypot(sample.du, sample.dv), relief->slope() * (1.0 + 1e-5));
       const double step = 1e-3;
-      ASSERT_NEAR(sample.du, (relief->at(p.x + step, p.y).d - relief->at(p.x - step, p.y).d) / (2 * step), 0.02 * relief->slope());
-      ASSERT_NEAR(sample.dv, (relief->at(p.x, p.y + step).d - relief->at(p.x, p.y - step).d) / (2 * step), 0.02 * relief->slope());
+      ASSERT_NEAR(sample.du, (relief->at(p.x + step, p.y).d - relief->at(p.x - step, p.y).d) / (2 * step),
+                  0.02 * relief->slope());
+      ASSERT_NEAR(sample.dv, (relief->at(p.x, p.y + step).d - relief->at(p.x, p.y - step).d) / (2 * step),
+                  0.02 * relief->slope());
     });
   }
 }
@@ -93,8 +95,8 @@ TEST(Relief, SmoothedKeepsLongFeaturesFadesShortOnesAndTendsToItsMean) {
     long_part += fine.at(at, 0.0).d * std::sin(2 * kPi * i / n) * 2.0 / n;
     short_part += fine.at(0.0, kPeriod - at).d * std::sin(2 * kPi * 16 * i / n) * 2.0 / n;
   }
-  EXPECT_GT(long_part, 0.18);                 // A wave of eight lengths keeps nine tenths.
-  EXPECT_LT(std::abs(short_part), 0.01);      // One of half a length keeps a twentieth at most.
+  EXPECT_GT(long_part, 0.18);             // A wave of eight lengths keeps nine tenths.
+  EXPECT_LT(std::abs(short_part), 0.01);  // One of half a length keeps a twentieth at most.
   EXPECT_NEAR(fine.mean(), relief.mean(), 1e-5);
 
   double slope = relief.slope();

@@ -14,8 +14,10 @@ namespace {
 constexpr double kRounding = 0.25;  // Paris et al. 2020, section 4.2.
 const Box kRegion{Vec3(-2.5), Vec3(2.5)};
 
-[[nodiscard]] std::shared_ptr<const RoundedPolytope> block(Seed seed, double rounding, Warp warp = {}, Vec3 centre = Vec3(0.0)) {
-  return std::make_shared<RoundedPolytope>(test::random_planes(seed, 20, 2.0, centre), centre, rounding, std::move(warp));
+[[nodiscard]] std::shared_ptr<const RoundedPolytope> block(Seed seed, double rounding, Warp warp = {},
+                                                           Vec3 centre = Vec3(0.0)) {
+  return std::make_shared<RoundedPolytope>(test::random_planes(seed, 20, 2.0, centre), centre, rounding,
+                                           std::move(warp));
 }
 
 TEST(RoundedPolytope, PassesTheContractSharpAndRounded) {
@@ -35,7 +37,8 @@ TEST(RoundedPolytope, PassesTheContractWithReliefsFromGentleToAbsurdlySteep) {
   for (const int pixels : {4, 32, 256})
     for (const double amplitude : {0.02, 0.4}) {
       SCOPED_TRACE(std::to_string(pixels) + " pixels in 4 m, amplitude " + std::to_string(amplitude));
-      test::check_field_contract(*block(3, kRounding, {test::noise_relief(5, pixels, pixels, 4.0), amplitude}), kRegion, 3);
+      test::check_field_contract(*block(3, kRounding, {test::noise_relief(5, pixels, pixels, 4.0), amplitude}), kRegion,
+                                 3);
     }
 }
 
@@ -66,7 +69,7 @@ TEST(RoundedPolytope, FoldsItsPlanesInOrderWithTheCubicMaximum) {
         sharp = std::max(sharp, h);
       }
       ASSERT_NEAR(field->value(p), expected, 3e-6);
-      ASSERT_GE(field->value(p), sharp - 3e-6);             // Inside the sharp polytope …
+      ASSERT_GE(field->value(p), sharp - 3e-6);              // Inside the sharp polytope …
       ASSERT_LE(field->value(p), sharp + kRounding + 3e-6);  // … by R at most.
     }
   });
@@ -97,12 +100,15 @@ TEST(RoundedPolytope, IsOnlyCarvedByItsReliefAndByNoMoreThanTheAmplitude) {
 TEST(RoundedPolytope, IsLeftAloneByAWhiteReliefAndSunkByTheAmplitudeUnderABlackOne) {
   const double amplitude = 0.1;
   const auto plain = std::make_shared<RoundedPolytope>(test::cube_planes(2.0), Vec3(0.0), kRounding);
-  const auto white = std::make_shared<RoundedPolytope>(test::cube_planes(2.0), Vec3(0.0), kRounding, Warp{test::flat_relief(1.0f), amplitude});
-  const auto black = std::make_shared<RoundedPolytope>(test::cube_planes(2.0), Vec3(0.0), kRounding, Warp{test::flat_relief(0.0f), amplitude});
+  const auto white = std::make_shared<RoundedPolytope>(test::cube_planes(2.0), Vec3(0.0), kRounding,
+                                                       Warp{test::flat_relief(1.0f), amplitude});
+  const auto black = std::make_shared<RoundedPolytope>(test::cube_planes(2.0), Vec3(0.0), kRounding,
+                                                       Warp{test::flat_relief(0.0f), amplitude});
   const Vec3 on_face{2.0, 0.3, -0.4};
   EXPECT_EQ(white->value(on_face), plain->value(on_face));
   EXPECT_NEAR(black->value(on_face), amplitude, 1e-6);
-  EXPECT_EQ(black->value(Vec3(0.0)), plain->value(Vec3(0.0)));  // Opposite faces cancel in the middle: no direction, no carving.
+  EXPECT_EQ(black->value(Vec3(0.0)),
+            plain->value(Vec3(0.0)));  // Opposite faces cancel in the middle: no direction, no carving.
 }
 
 TEST(RoundedPolytope, LooksItsReliefUpByTriplanarProjection) {
@@ -110,7 +116,8 @@ TEST(RoundedPolytope, LooksItsReliefUpByTriplanarProjection) {
   const ReliefPtr relief = test::noise_relief(4, 16, 16, 1.5);
   const double amplitude = 0.1;
   const Vec3 centre{100.25, -40.5, 7.0};
-  const auto field = std::make_shared<RoundedPolytope>(test::cube_planes(2.0, centre), centre, kRounding, Warp{relief, amplitude});
+  const auto field =
+      std::make_shared<RoundedPolytope>(test::cube_planes(2.0, centre), centre, kRounding, Warp{relief, amplitude});
   test::for_each_seed(50, [&](Seed seed) {
     Rng rng(seed, "places");
     const double y = rng.uniform(-1.5, 1.5);

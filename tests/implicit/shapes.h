@@ -11,7 +11,8 @@
 namespace outcrop::test {
 
 /// `count` planes around the centre at 0.6 to 1 times `radius`: a bounded block for count ≥ 12 or so.
-[[nodiscard]] inline std::vector<Plane> random_planes(Seed seed, int count, double radius, const Vec3& centre = Vec3(0.0)) {
+[[nodiscard]] inline std::vector<Plane> random_planes(Seed seed, int count, double radius,
+                                                      const Vec3& centre = Vec3(0.0)) {
   Rng rng(seed, "test planes");
   std::vector<Plane> planes;
   for (int i = 0; i < count; ++i) {

@@ -33,10 +33,10 @@ using Label = std::uint16_t;
 
 /// A scalar function of space: negative in rock, positive in air, metres.
 ///
-/// A heightfield, one block, ten million replicated blocks and a voxel grid are all Fields to the code above them. A field
-/// is immutable and shared as FieldPtr; make one with std::make_shared. Every field passes the contract of
-/// tests/implicit/field_contract.h: finite everywhere, 1-to-L Lipschitz, `bound` contains, `narrow` equals to the bit inside
-/// its box, a batch equals its single points to the bit.
+/// A heightfield, one block, ten million replicated blocks and a voxel grid are all Fields to the code above them. A
+/// field is immutable and shared as FieldPtr; make one with std::make_shared. Every field passes the contract of
+/// tests/implicit/field_contract.h: finite everywhere, 1-to-L Lipschitz, `bound` contains, `narrow` equals to the bit
+/// inside its box, a batch equals its single points to the bit.
 ///
 /// A node of your own needs `values` and `lipschitz`; the rest has defaults.
 class Field : public std::enable_shared_from_this<Field> {

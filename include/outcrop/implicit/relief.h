@@ -29,8 +29,8 @@ class Relief {
   [[nodiscard]] Sample at(double u, double v) const noexcept;
   /// The same at phases in [0, 1]: u / period − floor(u / period).
   [[nodiscard]] Sample at_phase(float u, float v) const noexcept;
-  /// The pixels for a hot loop of one's own: pixel (i, j), v upwards, sees the 3 x 3 at first + j · stride + i, for i in
-  /// [0, width], j in [0, height]; a fourth column may be read. Borrowed.
+  /// The pixels for a hot loop of one's own: pixel (i, j), v upwards, sees the 3 x 3 at first + j · stride + i, for i
+  /// in [0, width], j in [0, height]; a fourth column may be read. Borrowed.
   struct Pixels {
     const float* first;
     std::ptrdiff_t stride;
@@ -42,9 +42,9 @@ class Relief {
   [[nodiscard]] double period() const noexcept { return period_; }
   /// The mean of d: what `smoothed` tends to.
   [[nodiscard]] double mean() const noexcept;
-  /// The same relief with features shorter than `length` metres faded out, for coarse meshes (design decision 10): tends
-  /// to the mean as `length` passes the period, so that a coarse mesh sees the mean depth.
-  /// Cost: O(pixels). Method: three periodic extended box filters @cite gwosdek_2011, section 2.
+  /// The same relief with features shorter than `length` metres faded out, for coarse meshes (design decision 10):
+  /// tends to the mean as `length` passes the period, so that a coarse mesh sees the mean depth. Cost: O(pixels).
+  /// Method: three periodic extended box filters @cite gwosdek_2011, section 2.
   [[nodiscard]] Relief smoothed(double length) const;
 
  private:

@@ -28,8 +28,8 @@ struct Warp {
   [[nodiscard]] bool active() const noexcept { return relief && amplitude > 0.0; }
 };
 
-/// Planes packed for the hot loop: floats relative to the polytope's own centre, so that results do not depend on the box
-/// a field was narrowed to.
+/// Planes packed for the hot loop: floats relative to the polytope's own centre, so that results do not depend on the
+/// box a field was narrowed to.
 struct PackedPlanes {
   std::vector<float> nx, ny, nz, d;
 
@@ -43,7 +43,8 @@ struct PackedPlanes {
 /// smax(a, b) = max(a, b) + R/6 · max(1 − |a − b|/R, 0)³, then the gradient warp.
 ///
 /// A value type shared by RoundedPolytope and the replication node.
-/// Frame: `local` points are relative to the polytope's centre; `relief_origin` + local is where the relief is looked up.
+/// Frame: `local` points are relative to the polytope's centre; `relief_origin` + local is where the relief is looked
+/// up.
 class PolytopeKernel {
  public:
   PolytopeKernel() = default;
@@ -54,14 +55,15 @@ class PolytopeKernel {
   PolytopeKernel(std::span<const Plane> planes, double rounding, Warp warp, Vec3 relief_origin);
 
   /// out[i] = b(local[i]); gradients when not null. Cost: O(n · planes), vectorised over points.
-  void values(std::size_t n, const float* x, const float* y, const float* z, float* out, Vec3f* gradients) const noexcept;
+  void values(std::size_t n, const float* x, const float* y, const float* z, float* out,
+              Vec3f* gradients) const noexcept;
 
-  /// Contains b over the box (relative to the centre): fold of plane intervals, tightened by the centre value, widened by
-  /// the warp's amplitude upwards only (the relief only carves).
+  /// Contains b over the box (relative to the centre): fold of plane intervals, tightened by the centre value, widened
+  /// by the warp's amplitude upwards only (the relief only carves).
   [[nodiscard]] Interval bound(const Box& local) const noexcept;
 
-  /// The kernel without the planes that cannot be active in the box: equal to the bit there. Its lipschitz() is the local
-  /// one of what is left, often far smaller.
+  /// The kernel without the planes that cannot be active in the box: equal to the bit there. Its lipschitz() is the
+  /// local one of what is left, often far smaller.
   [[nodiscard]] PolytopeKernel narrow(const Box& local) const;
 
   /// 1 without warp, else 1 + Lip(displacement): see the proof in rounded_polytope.cpp.
