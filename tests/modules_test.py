@@ -4,12 +4,13 @@ import re
 import sys
 
 MAY_INCLUDE = {
-    "core": "", "implicit": "core", "terrain": "core implicit", "fracture": "core implicit", "tiles": "core implicit fracture",
-    "mesh": "core implicit", "render": "core implicit mesh", "amplify": "core implicit terrain fracture tiles mesh render"}
+    "core": "", "implicit": "core", "terrain": "core implicit", "fracture": "core implicit", "mesh": "core implicit",
+    "tiles": "core implicit fracture", "render": "core implicit mesh",
+    "amplify": "core implicit terrain fracture tiles mesh render"}
 THIRD_PARTIES = {  # what its headers look like; the stages that may use it, each in one source file
     "GLM": (r"glm/", "core implicit terrain fracture tiles mesh render amplify"), "TBB": (r"(oneapi/)?tbb/", "core"),
-    "OpenImageIO": (r"OpenImageIO/", "core"), "nlohmann-json": (r"nlohmann/", "core"), "OpenVDB": (r"openvdb/", "implicit"),
-    "libtiff": (r"tiff", "terrain"), "CGAL": (r"CGAL/", "fracture mesh"), "meshoptimizer": (r"meshoptimizer", "mesh"),
+    "OpenImageIO": (r"OpenImageIO/", "core"), "nlohmann-json": (r"nlohmann/", "core"),
+    "OpenVDB": (r"openvdb/", "implicit"), "libtiff": (r"tiff", "terrain"), "CGAL": (r"CGAL/", "fracture mesh"), "meshoptimizer": (r"meshoptimizer", "mesh"),
     "Embree": (r"embree3/", "render")}
 SYSTEM = r"[a-z_]+$|sys/|(unistd|fcntl|pthread|immintrin)\.h$"
 
@@ -26,7 +27,8 @@ def violations(files):
             continue
         deps = re.search(r"\bDEPS\s+([a-z\s]+)", files.get(f"lib/{stage}/CMakeLists.txt", ""))
         near &= {stage, *(deps[1].split() if deps else [])}
-        found += [f"{path}: includes {name}" for name in re.findall(r'#include "outcrop/(\w+)/', text) if name not in near]
+        ours = re.findall(r'#include "outcrop/(\w+)/', text)
+        found += [f"{path}: includes {name}" for name in ours if name not in near]
         for header in re.findall(r"#include <([^>]+)>", text):
             party = next((name for name, (look, _) in THIRD_PARTIES.items() if re.match(look, header)), None)
             if not party:
@@ -35,14 +37,14 @@ def violations(files):
                 used_by.setdefault((party, stage), set()).add(path)
                 found += [f"{path}: {party} in a public header"] if public else []
                 found += [] if stage in THIRD_PARTIES[party][1].split() else [f"{path}: {party} is not for {stage}"]
-    return found + [f"{party} in more than one file: {sorted(paths)}" for (party, _), paths in used_by.items() if len(paths) > 1]
+    return found + [f"{party} in several files: {sorted(paths)}" for (party, _), paths in used_by.items() if len(paths) > 1]
 
 
 root = pathlib.Path(__file__).resolve().parent.parent
-sources = {str(path.relative_to(root)): path.read_text(encoding="utf-8")
-           for pattern in ("include/outcrop/*/*.h", "lib/*/*.h", "lib/*/*.cpp", "lib/*/CMakeLists.txt") for path in root.glob(pattern)}
-planted = {"include/outcrop/core/x.h": '#include "outcrop/mesh/x.h"\n#include <tbb/x.h>', "lib/core/x.cpp": "#include <tbb/x.h>",
-           "lib/tiles/CMakeLists.txt": "outcrop_module(tiles DEPS core mesh)", "lib/terrain/x.cpp": "#include <zlib.h>",
+patterns = ("include/outcrop/*/*.h", "lib/*/*.h", "lib/*/*.cpp", "lib/*/CMakeLists.txt")
+sources = {str(path.relative_to(root)): path.read_text(encoding="utf-8") for pattern in patterns for path in root.glob(pattern)}
+planted = {"include/outcrop/core/x.h": '#include "outcrop/mesh/x.h"\n#include <tbb/x.h>',
+           "lib/core/x.cpp": "#include <tbb/x.h>", "lib/tiles/CMakeLists.txt": "outcrop_module(tiles DEPS core mesh)", "lib/terrain/x.cpp": "#include <zlib.h>",
            "lib/mesh/x.cpp": "#include <embree3/rtcore.h>"}
 caught = violations(planted)
 assert len(caught) == 6, f"six violations were planted, these were caught: {caught}"

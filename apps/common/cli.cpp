@@ -3,6 +3,7 @@
 #include <pthread.h>
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
@@ -18,8 +19,6 @@
 #include <thread>
 #include <utility>
 #include <vector>
-
-#include <CLI/CLI.hpp>
 
 #include "outcrop/core/error.h"
 #include "progress_line.h"
@@ -89,7 +88,8 @@ std::vector<std::string> option_names(const CLI::App& app) {
 // What is wrong with the first argument that nothing took, or "".
 std::string about_extras(const CLI::App& app) {
   const std::vector<std::string> extras = app.remaining();
-  const auto option = std::find_if(extras.begin(), extras.end(), [](const auto& word) { return word.starts_with("-"); });
+  const auto option =
+      std::find_if(extras.begin(), extras.end(), [](const auto& word) { return word.starts_with("-"); });
   if (option == extras.end()) return extras.empty() ? "" : "unexpected argument \"" + extras.front() + "\"";
   const std::string word = option->substr(0, option->find('='));
   const std::vector<std::string> names = option_names(app);
@@ -123,7 +123,9 @@ std::string about(const CLI::App& app, const CLI::ParseError& error) {
     const int count = option->get_items_expected_min();
     const bool missing = text.ends_with(" missing");
     return name + ": expected " + (count == 1 ? "one value" : std::to_string(count) + " values") + ", got " +
-           (!missing ? std::to_string(option->results().size()) : count == 1 ? "none" : "fewer");
+           (!missing     ? std::to_string(option->results().size())
+            : count == 1 ? "none"
+                         : "fewer");
   }
   return text;
 }

@@ -24,8 +24,9 @@ fs::path data_path() {
   for (const fs::path& candidate : candidates) {
     if (fs::is_directory(candidate, ignored)) return candidate;
   }
-  throw InputError(candidates[0].string() +
-                   ": expected the project's data folder, got none; set OUTCROP_DATA to the folder that holds reliefs/");
+  throw InputError(
+      candidates[0].string() +
+      ": expected the project's data folder, got none; set OUTCROP_DATA to the folder that holds reliefs/");
 }
 
 }  // namespace outcrop

@@ -1,5 +1,8 @@
 #include "outcrop/core/image.h"
 
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cstdint>
@@ -9,9 +12,6 @@
 #include <memory>
 #include <system_error>
 #include <type_traits>
-
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
 
 #include "outcrop/core/error.h"
 #include "outcrop/core/file.h"
@@ -149,10 +149,10 @@ class Reader {
       bytes_.resize(pixels * channels * kind.type.size());
       const int y0 = spec.y + row;
       const int y1 = y0 + rows;
-      const bool read = spec.tile_width ? input_->read_tiles(0, 0, spec.x, spec.x + spec.width, y0, y1, spec.z, spec.z + 1,
-                                                             c, c + channels, kind.type, bytes_.data())
-                                        : input_->read_scanlines(0, 0, y0, y1, spec.z, c, c + channels, kind.type,
-                                                                 bytes_.data());
+      const bool read = spec.tile_width
+                            ? input_->read_tiles(0, 0, spec.x, spec.x + spec.width, y0, y1, spec.z, spec.z + 1, c,
+                                                 c + channels, kind.type, bytes_.data())
+                            : input_->read_scanlines(0, 0, y0, y1, spec.z, c, c + channels, kind.type, bytes_.data());
       if (!read || input_->has_error()) {
         fail("a damaged one (rows " + std::to_string(row) + " to " + std::to_string(row + rows - 1) + " of " +
              std::to_string(spec.height) + ": " + one_line(input_->geterror()) + ")");

@@ -1,12 +1,11 @@
 #include "outcrop/core/json.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cctype>
+#include <charconv>
 #include <cmath>
-#include <unordered_set>
-
 #include <nlohmann/json.hpp>
+#include <unordered_set>
 
 #include "outcrop/core/error.h"
 #include "outcrop/core/file.h"
@@ -15,8 +14,8 @@ namespace outcrop {
 
 namespace {
 
-constexpr std::size_t kMaxDepth = 200;         // Of nested arrays and objects: destroying a Json recurses.
-constexpr std::size_t kMaxExcerpt = 40;        // Characters of the input that a message repeats.
+constexpr std::size_t kMaxDepth = 200;   // Of nested arrays and objects: destroying a Json recurses.
+constexpr std::size_t kMaxExcerpt = 40;  // Characters of the input that a message repeats.
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 std::string shortest(double value) {
@@ -42,7 +41,8 @@ std::string numbers_in(const Bounds& bounds, std::string_view what) {
   const std::string name(what);
   const bool below = std::isfinite(bounds.hi);
   if (std::isfinite(bounds.lo)) {
-    if (below) return name + (bounds.open_lo ? " in (" : " in [") + shortest(bounds.lo) + ", " + shortest(bounds.hi) + "]";
+    if (below)
+      return name + (bounds.open_lo ? " in (" : " in [") + shortest(bounds.lo) + ", " + shortest(bounds.hi) + "]";
     return name + (bounds.open_lo ? " > " : " >= ") + shortest(bounds.lo);
   }
   return below ? name + " <= " + shortest(bounds.hi) : name;
@@ -52,8 +52,8 @@ bool within(double v, const Bounds& bounds) {
   return (bounds.open_lo ? v > bounds.lo : v >= bounds.lo) && v <= bounds.hi;
 }
 
-// Follows the tokenizer through the text with a cursor of its own: between two of its events stand only white space, commas
-// and colons, so the next token starts where those end. The tokenizer's own positions point behind a token.
+// Follows the tokenizer through the text with a cursor of its own: between two of its events stand only white space,
+// commas and colons, so the next token starts where those end. The tokenizer's own positions point behind a token.
 class Builder {
  public:
   using number_integer_t = nlohmann::json::number_integer_t;
@@ -306,7 +306,8 @@ class Builder {
   Json root_;
 };
 
-[[noreturn]] void fail_member(const Json& at, std::string_view key, const std::string& expected, const std::string& got) {
+[[noreturn]] void fail_member(const Json& at, std::string_view key, const std::string& expected,
+                              const std::string& got) {
   throw InputError(at.place() + ": \"" + std::string(key) + "\": expected " + expected + ", got " + got);
 }
 
@@ -408,7 +409,8 @@ std::string JsonReader::string(std::string_view key, std::string_view fallback) 
   return value->string;
 }
 
-std::size_t JsonReader::choice(std::string_view key, std::size_t fallback, const std::vector<std::string_view>& choices) {
+std::size_t JsonReader::choice(std::string_view key, std::size_t fallback,
+                               const std::vector<std::string_view>& choices) {
   const Json* const value = child(key);
   if (!value) return fallback;
   const std::string expected = "one of " + listed(choices);

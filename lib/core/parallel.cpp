@@ -1,12 +1,12 @@
 #include "outcrop/core/parallel.h"
 
-#include <algorithm>
-
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/partitioner.h>
 #include <oneapi/tbb/task_arena.h>
+
+#include <algorithm>
 
 #include "outcrop/core/error.h"
 

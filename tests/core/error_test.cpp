@@ -1,8 +1,8 @@
 #include "outcrop/core/error.h"
 
-#include <array>
-
 #include <gtest/gtest.h>
+
+#include <array>
 
 #include "core/scratch.h"
 

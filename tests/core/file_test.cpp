@@ -1,13 +1,12 @@
 #include "outcrop/core/file.h"
 
+#include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <fstream>
-
-#include <gtest/gtest.h>
 
 #include "core/scratch.h"
 #include "outcrop/core/data_path.h"
@@ -50,7 +49,8 @@ TEST(OutputFile, KeepsWhatWasWrittenAcrossItsBufferAndOverwrites) {
   std::string expected;
   for (int i = 0; i < 500'000; ++i) expected += std::to_string(i) + " ";
   OutputFile file(folder / "long.bin");
-  for (std::size_t at = 0; at < expected.size(); at += 77'777) file.write(std::string_view(expected).substr(at, 77'777));
+  for (std::size_t at = 0; at < expected.size(); at += 77'777)
+    file.write(std::string_view(expected).substr(at, 77'777));
   file.overwrite(2'000'000, std::as_bytes(std::span(std::string_view("count"))));
   expected.replace(2'000'000, 5, "count");
   file.overwrite(0, std::as_bytes(std::span(std::string_view("head"))));

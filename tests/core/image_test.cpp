@@ -1,9 +1,9 @@
 #include "outcrop/core/image.h"
 
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <fstream>
-
-#include <gtest/gtest.h>
 
 #include "core/scratch.h"
 #include "outcrop/core/error.h"
@@ -23,7 +23,8 @@ Image noise(int width, int height, int channels, Seed seed = 1) {
   image.height = height;
   image.channels = channels;
   Rng rng(seed, "image");
-  for (int i = 0; i < width * height * channels; ++i) image.pixels.push_back(static_cast<float>(rng.uniform(-0.2, 1.2)));
+  for (int i = 0; i < width * height * channels; ++i)
+    image.pixels.push_back(static_cast<float>(rng.uniform(-0.2, 1.2)));
   return image;
 }
 
@@ -45,8 +46,8 @@ class Tiff {
     const auto entry = [&](unsigned tag, unsigned value) { return u16(tag) + u16(4) + u32(1) + u32(value); };
     const unsigned w = width, h = height;
     bytes = "II" + u16(42) + u32(8) + u16(10) + entry(256, w) + entry(257, h) + entry(258, bits) + entry(259, 1) +
-            entry(262, 1) + entry(273, 8 + 2 + 10 * 12 + 4) + entry(277, 1) + entry(278, h) + entry(279, w * h * bits / 8) +
-            entry(339, sample_format) + u32(0) + pixels;
+            entry(262, 1) + entry(273, 8 + 2 + 10 * 12 + 4) + entry(277, 1) + entry(278, h) +
+            entry(279, w * h * bits / 8) + entry(339, sample_format) + u32(0) + pixels;
   }
   std::string bytes;
 };
@@ -59,7 +60,8 @@ std::string raw(const std::vector<T>& values) {
 TEST(ReadImage, KeepsNativeIntegerValues) {
   const Scratch folder;
   const fs::path path = folder / "a.tif";
-  const auto reads = [&](int bits, int format, const std::string& pixels, double full_scale, std::vector<float> expected) {
+  const auto reads = [&](int bits, int format, const std::string& pixels, double full_scale,
+                         std::vector<float> expected) {
     put(path, Tiff(2, 2, bits, format, pixels).bytes);
     const Image image = read_image(path);
     EXPECT_EQ(image.width * 10 + image.height, 22);

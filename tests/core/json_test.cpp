@@ -1,8 +1,8 @@
 #include "outcrop/core/json.h"
 
-#include <fstream>
-
 #include <gtest/gtest.h>
+
+#include <fstream>
 
 #include "core/scratch.h"
 #include "outcrop/core/error.h"
@@ -18,7 +18,8 @@ std::string parse_failure(std::string_view text) {
 }
 
 TEST(ParseJson, KeepsValuesTheirOrderAndWhereTheyStand) {
-  const Json json = parse_json("\xEF\xBB\xBF{\n  \"é\": [1, -2.5e1 ,\"a\\\"]\\u00e9\"],\n  \"b\" : {\"c\": true, \"d\": null}}", "f");
+  const Json json =
+      parse_json("\xEF\xBB\xBF{\n  \"é\": [1, -2.5e1 ,\"a\\\"]\\u00e9\"],\n  \"b\" : {\"c\": true, \"d\": null}}", "f");
   ASSERT_EQ(json.members.size(), 2u);
   EXPECT_EQ(json.place(), "f:1:1");
   const Json& list = json.members[0].second;
@@ -115,7 +116,8 @@ TEST(ReadJson, NamesTheFile) {
 }
 
 TEST(JsonReader, GivesValuesOrTheirDefaults) {
-  const Json json = parse_json(R"({"n": 2.5, "i": 3, "b": true, "s": "x", "c": "two", "v": [1, 2, 3], "a": [{}]})", "f");
+  const Json json =
+      parse_json(R"({"n": 2.5, "i": 3, "b": true, "s": "x", "c": "two", "v": [1, 2, 3], "a": [{}]})", "f");
   JsonReader reader(json);
   EXPECT_EQ(reader.number("n", 0.0), 2.5);
   EXPECT_EQ(reader.number("none", 7.0, {0.0, 1.0}), 7.0);
@@ -133,10 +135,13 @@ TEST(JsonReader, GivesValuesOrTheirDefaults) {
 }
 
 TEST(JsonReader, NamesKeyBoundAndValue) {
-  const Json json = parse_json(R"({"slope": 120, "k": "x", "i": 2.5, "zero": 0, "v": [1, -2], "c": "tow", "l": {}})", "f");
+  const Json json =
+      parse_json(R"({"slope": 120, "k": "x", "i": 2.5, "zero": 0, "v": [1, -2], "c": "tow", "l": {}})", "f");
   JsonReader reader(json);
   const auto failure = [](auto&& call) { return message_of<InputError>(call); };
-  EXPECT_EQ(failure([&] { (void)reader.number("slope", 0.0, {0.0, 90.0}); }),
+  EXPECT_EQ(failure([&] {
+              (void)reader.number("slope", 0.0, {0.0, 90.0});
+            }),
             "f:1:2: \"slope\": expected a number in [0, 90], got 120");
   EXPECT_EQ(failure([&] { (void)reader.number("k", 0.0); }), "f:1:16: \"k\": expected a number, got string \"x\"");
   EXPECT_EQ(failure([&] { (void)reader.number("zero", 1.0, {.lo = 0.0, .open_lo = true}); }),
@@ -146,7 +151,9 @@ TEST(JsonReader, NamesKeyBoundAndValue) {
   EXPECT_EQ(failure([&] { (void)reader.numbers("v", {}, 2, {.lo = 0.0}); }),
             "f:1:56: \"v\": expected 2 numbers >= 0, got -2");
   EXPECT_EQ(failure([&] { (void)reader.numbers("v", {}, 3); }), "f:1:47: \"v\": expected 3 numbers, got 2");
-  EXPECT_EQ(failure([&] { (void)reader.choice("c", 0, {"one", "two"}); }),
+  EXPECT_EQ(failure([&] {
+              (void)reader.choice("c", 0, {"one", "two"});
+            }),
             "f:1:61: \"c\": expected one of \"one\", \"two\", got \"tow\"; did you mean \"two\"?");
   EXPECT_EQ(failure([&] { (void)reader.array("l"); }), "f:1:73: \"l\": expected an array, got object");
   EXPECT_EQ(failure([&] { (void)reader.boolean("l", true); }), "f:1:73: \"l\": expected true or false, got object");
@@ -157,8 +164,7 @@ TEST(JsonReader, RefusesKeysThatNobodyAskedFor) {
   const Json json = parse_json("{\"slope\": 1,\n \"slop\": 2}", "f");
   JsonReader reader(json);
   EXPECT_EQ(reader.number("slope", 0.0), 1.0);
-  EXPECT_EQ(message_of<InputError>([&] { reader.finish(); }),
-            "f:2:2: key \"slop\": unknown; did you mean \"slope\"?");
+  EXPECT_EQ(message_of<InputError>([&] { reader.finish(); }), "f:2:2: key \"slop\": unknown; did you mean \"slope\"?");
   JsonReader other(json);
   (void)other.has("colour");
   EXPECT_EQ(message_of<InputError>([&] { other.finish(); }), "f:1:2: key \"slope\": unknown; known are \"colour\"");

@@ -1,7 +1,7 @@
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <limits>
-
-#include <gtest/gtest.h>
 
 #include "outcrop/core/json.h"
 #include "outcrop/core/rng.h"
@@ -37,7 +37,8 @@ TEST(JsonWriter, WritesNumbersThatReadBackTheSame) {
   writer.begin_array();
   std::vector<double> numbers{0.0, -0.0, 1e300, 5e-324, 9007199254740993.0, 1e22, -1.5};
   Rng rng(1, "numbers");
-  for (int i = 0; i < 1000; ++i) numbers.push_back(std::ldexp(rng.uniform(-1.0, 1.0), static_cast<int>(rng.below(600)) - 300));
+  for (int i = 0; i < 1000; ++i)
+    numbers.push_back(std::ldexp(rng.uniform(-1.0, 1.0), static_cast<int>(rng.below(600)) - 300));
   for (const double v : numbers) writer.item(v);
   writer.end_array();
   const Json json = parse_json(writer.text(), "numbers");

@@ -1,13 +1,13 @@
 #include "outcrop/core/parallel.h"
 
+#include <gtest/gtest.h>
+
 #include <atomic>
 #include <chrono>
 #include <map>
 #include <mutex>
 #include <set>
 #include <thread>
-
-#include <gtest/gtest.h>
 
 #include "core/scratch.h"
 #include "outcrop/core/rng.h"
@@ -96,7 +96,9 @@ TEST(ParallelFor, IsCancelledBetweenItems) {
                      task),
                  Cancelled);
     EXPECT_LT(started, 10'000);
-    EXPECT_THROW(parallel_for(0, [](std::size_t) {}, task), Cancelled);
+    EXPECT_THROW(parallel_for(
+                     0, [](std::size_t) {}, task),
+                 Cancelled);
   }
 }
 
