@@ -10,7 +10,8 @@ MAY_INCLUDE = {
 THIRD_PARTIES = {  # what its headers look like; the stages that may use it, each in one source file
     "GLM": (r"glm/", "core implicit terrain fracture tiles mesh render amplify"), "TBB": (r"(oneapi/)?tbb/", "core"),
     "OpenImageIO": (r"OpenImageIO/", "core"), "nlohmann-json": (r"nlohmann/", "core"),
-    "OpenVDB": (r"openvdb/", "implicit"), "libtiff": (r"tiff", "terrain"), "CGAL": (r"CGAL/", "fracture mesh"), "meshoptimizer": (r"meshoptimizer", "mesh"),
+    "OpenVDB": (r"openvdb/", "implicit"), "libtiff": (r"tiff", "terrain"),
+    "CGAL": (r"CGAL/", "fracture mesh"), "meshoptimizer": (r"meshoptimizer", "mesh"),
     "Embree": (r"embree3/", "render")}
 SYSTEM = r"[a-z_]+$|sys/|(unistd|fcntl|pthread|immintrin)\.h$"
 
@@ -37,14 +38,17 @@ def violations(files):
                 used_by.setdefault((party, stage), set()).add(path)
                 found += [f"{path}: {party} in a public header"] if public else []
                 found += [] if stage in THIRD_PARTIES[party][1].split() else [f"{path}: {party} is not for {stage}"]
-    return found + [f"{party} in several files: {sorted(paths)}" for (party, _), paths in used_by.items() if len(paths) > 1]
+    several = [f"{party} in {sorted(paths)}" for (party, _), paths in used_by.items() if len(paths) > 1]
+    return found + several
 
 
 root = pathlib.Path(__file__).resolve().parent.parent
 patterns = ("include/outcrop/*/*.h", "lib/*/*.h", "lib/*/*.cpp", "lib/*/CMakeLists.txt")
-sources = {str(path.relative_to(root)): path.read_text(encoding="utf-8") for pattern in patterns for path in root.glob(pattern)}
+paths = [path for pattern in patterns for path in root.glob(pattern)]
+sources = {str(path.relative_to(root)): path.read_text(encoding="utf-8") for path in paths}
 planted = {"include/outcrop/core/x.h": '#include "outcrop/mesh/x.h"\n#include <tbb/x.h>',
-           "lib/core/x.cpp": "#include <tbb/x.h>", "lib/tiles/CMakeLists.txt": "outcrop_module(tiles DEPS core mesh)", "lib/terrain/x.cpp": "#include <zlib.h>",
+           "lib/core/x.cpp": "#include <tbb/x.h>",
+           "lib/tiles/CMakeLists.txt": "outcrop_module(tiles DEPS core mesh)", "lib/terrain/x.cpp": "#include <zlib.h>",
            "lib/mesh/x.cpp": "#include <embree3/rtcore.h>"}
 caught = violations(planted)
 assert len(caught) == 6, f"six violations were planted, these were caught: {caught}"
