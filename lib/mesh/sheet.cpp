@@ -168,10 +168,10 @@ class BrickList {
 };
 
 [[noreturn]] void contradiction(const Vec3& where) {
-  char got[160];
-  std::snprintf(got, sizeof got, "neighbouring boxes that disagree near (%.9g, %.9g, %.9g)", where.x, where.y, where.z);
-  require(false, "field", "bound and narrow that agree with its values", std::string_view(got));
-  std::abort();
+  char place[96];
+  std::snprintf(place, sizeof place, "(%.9g, %.9g, %.9g)", where.x, where.y, where.z);
+  throw ParameterError(
+      std::string("field: expected bound and narrow that agree with its values, got boxes that disagree near ") + place);
 }
 
 /// Writes the triangles of one brick: numbers all its crossing edges, then copies cases.
