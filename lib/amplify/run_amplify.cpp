@@ -156,8 +156,16 @@ class Runner {
  private:
   [[nodiscard]] const Amplified& amplified() const { return report_.amplified; }
 
-  void say(const std::string& line) const {
-    if (notify_) notify_(line);
+  /// Lines wait until the inputs have been found usable: a refusal is one line and stands alone.
+  void say(const std::string& line) {
+    waiting_.push_back(line);
+    if (accepted_) speak();
+  }
+  void speak() {
+    accepted_ = true;
+    for (const std::string& line : waiting_)
+      if (notify_) notify_(line);
+    waiting_.clear();
   }
   void note(const std::string& line) {
     report_.notes.push_back(line);
@@ -207,6 +215,7 @@ class Runner {
     if (block_count(amplified()) == 0)
       note("no ground here is steeper than " + number_text(degrees(report_.rock.placement.slope)) +
            " degrees, or blocks are below the resolution: the terrain stays as it is");
+    speak();
     watch_.lap();
   }
 
@@ -289,6 +298,8 @@ class Runner {
   const Task& task_;
   AmplifyReport report_;
   Stopwatch watch_, total_;
+  std::vector<std::string> waiting_;
+  bool accepted_ = false;
 };
 
 }  // namespace

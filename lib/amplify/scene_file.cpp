@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
 
 #include "material_reader.h"
 #include "outcrop/core/json.h"
@@ -23,6 +24,9 @@ namespace {
 
 constexpr double kRegionMargin = 0.02;  // Of the support's longest side: air around the solid, so that it closes.
 constexpr double kMeshBand = 4.0;       // Voxels of exact distance on either side of a mesh.
+constexpr double kUniverse = 16384.0;   // Metres to each side: where a solid of unknown extent is sought.
+constexpr double kSearchCells = 32.0;   // Across the solid, when it is found.
+constexpr std::size_t kSearchBoxes = 1 << 15;
 constexpr Bounds kFinite{-1e9, 1e9};    // Metres: everything on Earth, and no overflow in squares.
 constexpr Bounds kLength{.lo = 0.0, .hi = 1e9, .open_lo = true};
 
@@ -335,10 +339,36 @@ void read_materials(JsonReader& reader, Scene& scene) {
   }
 }
 
+/// Where the field may be negative, from its bounds alone: nothing when it reaches the end of the universe.
+std::optional<Box> found_by_bounds(const Field& field) {
+  const Box universe{Vec3(-kUniverse), Vec3(kUniverse)};
+  std::vector<Box> boxes{universe};
+  for (double size = kUniverse; !boxes.empty(); size *= 0.5) {
+    std::vector<Box> smaller;
+    Box found;
+    for (const Box& box : boxes)
+      for (int corner = 0; corner < 8; ++corner) {
+        const Vec3 lo = box.lo + size * Vec3(corner & 1, (corner >> 1) & 1, corner >> 2);
+        const Box child{lo, lo + size};
+        if (field.bound(child).lo > 0.0) continue;
+        smaller.push_back(child);
+        found = hull(found, child);
+      }
+    boxes = std::move(smaller);
+    const Vec3 extent = found.size();
+    const double longest = std::max({extent.x, extent.y, extent.z});
+    if (boxes.size() < kSearchBoxes && size * kSearchCells > longest) continue;
+    const bool inside = glm::all(glm::greaterThan(found.lo, universe.lo)) && glm::all(glm::lessThan(found.hi, universe.hi));
+    return inside ? std::optional(found) : std::nullopt;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::optional<Box> default_region(const Field& field) {
-  const std::optional<Box> support = field.support();
+  std::optional<Box> support = field.support();
+  if (!support) support = found_by_bounds(field);
   if (!support || support->empty()) return std::nullopt;
   const Vec3 size = support->size();
   const double longest = std::max({size.x, size.y, size.z});

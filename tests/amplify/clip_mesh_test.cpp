@@ -42,7 +42,10 @@ TEST(ClipMesh, CutsAlongTheZeroLineAndKeepsTheSheetInOnePiece) {
 
 TEST(ClipMesh, LeavesAMeshAloneThatLiesInside) {
   const TriangleMesh whole = sheet(5);
-  EXPECT_EQ(clip_mesh(whole, *sphere(Vec3(0.0), 100.0)).triangles, whole.triangles);
+  const TriangleMesh same = clip_mesh(whole, *sphere(Vec3(0.0), 100.0));
+  EXPECT_EQ(same.positions.size(), whole.positions.size());
+  EXPECT_EQ(same.triangles.size(), whole.triangles.size());
+  EXPECT_DOUBLE_EQ(check_mesh(same).area, 25.0);
   EXPECT_TRUE(clip_mesh(whole, *sphere(Vec3(0, 0, 200), 100.0)).positions.empty());
 }
 

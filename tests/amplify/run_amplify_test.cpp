@@ -121,7 +121,7 @@ TEST_F(RunAmplifyTest, MeshesCountFromTheSouthWestCornerAndKeepElevations) {
       }
     if (!away) continue;
     ++level;
-    ASSERT_NEAR(p.z, terrain.at(p.x, p.y).h, 1e-3);
+    ASSERT_NEAR(p.z, terrain.at(p.x, p.y).h, 0.02 * 0.3) << "the mesher keeps off the ends of edges by 2 % of a cell";
   }
   EXPECT_GT(level, 100u);
 }

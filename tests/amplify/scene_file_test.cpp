@@ -72,6 +72,15 @@ TEST_F(SceneFileTest, TheRegionIsTheFilesElseAroundTheSolid) {
   EXPECT_EQ(scene.resolution, 0.5);
 }
 
+TEST_F(SceneFileTest, ASolidOfUnknownExtentIsFoundByItsBounds) {
+  const Box found = read(R"({"smooth_union": {"radius": 0.5, "of": [{"sphere": {"centre": [100, 50, 3], "radius": 2}},
+                                                                   {"sphere": {"centre": [103, 50, 3], "radius": 2}}]}})").region.value();
+  EXPECT_LE(found.lo.x, 98.0);
+  EXPECT_GE(found.lo.x, 97.0);
+  EXPECT_GE(found.hi.x, 105.0);
+  EXPECT_LE(found.hi.x, 106.0);
+}
+
 TEST_F(SceneFileTest, LabelsNameMaterials) {
   const Scene scene = read_scene(write(R"({"materials": [{"name": "chalk"}, {"name": "flint", "colour": [0.1, 0.1, 0.2]}],
     "field": {"union": [{"label": {"material": "chalk", "of": {"sphere": {"centre": [-3, 0, 0]}}}},
@@ -87,7 +96,7 @@ TEST_F(SceneFileTest, LabelsNameMaterials) {
 /// Every kind of node, in one scene each, so that none is forgotten in the table.
 TEST_F(SceneFileTest, EveryKindIsRead) {
   PolygonizeResult ball = polygonize(*sphere(Vec3(0.0), 1.0), {.region = {Vec3(-1.5), Vec3(1.5)}, .resolution = 0.2});
-  write_mesh(folder_ / "ball.ply", ball.mesh);
+  write_mesh(folder_ / "ball.ply", rebased(ball.mesh, Vec3(0.0)));
   write_vdb(folder_ / "ball.vdb", *sphere(Vec3(0.0), 1.0), {Vec3(-1.5), Vec3(1.5)}, 0.1, Vec3(0.0));
   Image heights{.width = 8, .height = 8, .channels = 1, .pixels = std::vector<float>(64, 0.0f), .channel_names = {"Y"}};
   write_image(folder_ / "flat.exr", heights);

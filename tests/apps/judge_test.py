@@ -19,7 +19,7 @@ except ImportError:
 with tempfile.TemporaryDirectory(prefix="outcrop-") as folder:
     images.exr(os.path.join(folder, "cliff.exr"), 48, 48, {"Y": images.cliff()})
     with open(os.path.join(folder, "small.json"), "w") as file:
-        json.dump({"materials": [{"tile_side": 8, "sample_spacing": 0.45}]}, file)
+        json.dump({"materials": [{"tile_side": 16, "sample_spacing": 0.9}]}, file)
     subprocess.run([sys.argv[1], "cliff.exr", "--strata", "small.json", "--resolution", "0.25", "--solid", "--quiet", "-o",
                     "solid.ply"], cwd=folder, check=True)
     mesh = trimesh.load(os.path.join(folder, "solid.ply"), process=False)

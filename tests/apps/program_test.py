@@ -17,7 +17,7 @@ import unittest
 import images
 
 AMPLIFY, POLYGONIZE = sys.argv[1], sys.argv[2]
-SMALL = {"materials": [{"tile_side": 8, "sample_spacing": 0.45}]}
+SMALL = {"materials": [{"tile_side": 16, "sample_spacing": 0.9}]}
 
 
 class ProgramTest(unittest.TestCase):
@@ -74,7 +74,7 @@ class BadHeightmaps(ProgramTest):
 
     def test_directory(self):
         os.mkdir(self.path("folder.exr"))
-        self.assert_heightmap_refused("folder.exr", "directory")
+        self.assert_heightmap_refused("folder.exr", "folder")
 
     def test_empty_files(self):
         for name in ("empty.exr", "empty.tif", "empty.png", "N10E010.hgt"):
@@ -144,7 +144,7 @@ class BadHeightmaps(ProgramTest):
 class BadStrata(ProgramTest):
     def test_missing_directory_and_empty(self):
         self.assert_refused(self.amplify("cliff.exr", "--strata", "gone.json", "-o", "out/a.ply"), "gone.json")
-        self.assert_refused(self.amplify("cliff.exr", "--strata", ".", "-o", "out/a.ply"), "directory")
+        self.assert_refused(self.amplify("cliff.exr", "--strata", ".", "-o", "out/a.ply"), "folder")
         self.assert_strata_refused("")
 
     def test_json_that_does_not_parse_names_line_and_column(self):
@@ -160,7 +160,7 @@ class BadStrata(ProgramTest):
         self.assert_strata_refused('{"placement": {"slope_deg": 99}}', "slope_deg", "89", "99")
 
     def test_a_layer_of_no_material(self):
-        self.assert_strata_refused('{"strata": {"layers": [{"material": "cheese"}]}}', "bad.json:1:24", "cheese")
+        self.assert_strata_refused('{"strata": {"layers": [{"material": "cheese"}]}}', "bad.json:1:25", "cheese")
 
     def test_missing_relief_image(self):
         self.assert_strata_refused('{"materials": [{"relief": {"image": "gone.png"}}]}', "bad.json:1:28", "gone.png")

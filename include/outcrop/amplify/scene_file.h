@@ -32,7 +32,8 @@ inline constexpr double kDefaultCells = 128;  ///< Cells along the longest side 
 /// @throws InputError.
 [[nodiscard]] FieldPtr mesh_field(const std::filesystem::path& path, double voxel = 0.0, const Task& task = {});
 
-/// The region in which a field of known support is meshed when nobody names one: its support, grown by 2 %.
+/// The region in which a field is meshed when nobody names one: its support, or else the box that its bounds leave
+/// within 16 km of the origin, grown by 2 %. Nothing for solids without end.
 [[nodiscard]] std::optional<Box> default_region(const Field& field);
 
 }  // namespace outcrop
