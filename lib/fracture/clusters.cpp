@@ -140,7 +140,9 @@ class CellSplitter {
     const Vec3 size = node.shape.bounds().size();
     if (std::max(size.x, std::max(size.y, size.z)) <= options_.longest) return {};
     // Along the joints across which it is longest.
-    Vec3 normal = size.x >= size.y && size.x >= size.z ? Vec3(1, 0, 0) : size.y >= size.z ? Vec3(0, 1, 0) : Vec3(0, 0, 1);
+    Vec3 normal = size.x >= size.y && size.x >= size.z ? Vec3(1, 0, 0)
+                  : size.y >= size.z                   ? Vec3(0, 1, 0)
+                                                       : Vec3(0, 0, 1);
     double longest = 0.0;
     for (const Disc& disc : discs_)
       if (const double width = node.shape.distances({disc.normal, 0.0}).width(); width > longest) {
@@ -177,7 +179,8 @@ class CellSplitter {
     for (const Polytope::Face& face : shape.faces) {
       if (glm::dot(face.plane.normal, cut.plane.normal) > -std::cos(options_.least_angle) || &face == &cut) continue;
       int shared = 0;
-      for (const std::uint32_t v : face.loop) shared += std::find(cut.loop.begin(), cut.loop.end(), v) != cut.loop.end();
+      for (const std::uint32_t v : face.loop)
+        shared += std::find(cut.loop.begin(), cut.loop.end(), v) != cut.loop.end();
       if (shared >= 2) return true;
     }
     return false;
@@ -254,7 +257,8 @@ class CellSplitter {
 
 Clusters split_samples(const std::vector<Vec3>& samples, const Graph& graph, const std::vector<Disc>& discs,
                        const ClusterOptions& options, Seed seed, const Task& task) {
-  require(graph.first.size() == samples.size() + 1, "graph", "one row a sample", static_cast<double>(graph.first.size()));
+  require(graph.first.size() == samples.size() + 1, "graph", "one row a sample",
+          static_cast<double>(graph.first.size()));
   RegionSplitter regions(discs, options, seed);
   CellSplitter cells(samples, graph, discs, options, seed);
   Clusters clusters;

@@ -8,7 +8,7 @@ namespace outcrop {
 namespace {
 
 constexpr double kHexagonArea = 0.8660254037844386;  // √3/2: of a hexagon of width 1 across its flats.
-constexpr int kRelaxations = 3;     // Lloyd's steps: cooling rock evens its columns out, but not to hexagons.
+constexpr int kRelaxations = 3;  // Lloyd's steps: cooling rock evens its columns out, but not to hexagons.
 constexpr int kSeedAttempts = 24;
 constexpr double kSeedSpacing = 0.75;  // Of the column width: wished between seeds; about the densest that darts reach.
 constexpr double kReach = 2.5;         // Of the column width: neighbours of a Voronoi cell are within it.
@@ -30,15 +30,18 @@ std::vector<Edge> cut(const std::vector<Edge>& polygon, const Vec3& n, double di
     const double b = height(next);
     if (a <= 0.0) result.push_back(edge);
     if (a <= 0.0 && b > 0.0) result.push_back({edge.from + a / (a - b) * (next - edge.from), n, distance});
-    if (a > 0.0 && b <= 0.0) result.push_back({edge.from + a / (a - b) * (next - edge.from), edge.normal, edge.distance});
+    if (a > 0.0 && b <= 0.0)
+      result.push_back({edge.from + a / (a - b) * (next - edge.from), edge.normal, edge.distance});
   }
   return result;
 }
 
 std::vector<Edge> voronoi_cell(const std::vector<Vec3>& seeds, const WrappedGrid& grid, std::size_t i, double side) {
   const double half = 0.5 * side;
-  std::vector<Edge> cell{{{-half, -half}, {0, -1, 0}, half}, {{half, -half}, {1, 0, 0}, half},
-                         {{half, half}, {0, 1, 0}, half}, {{-half, half}, {-1, 0, 0}, half}};
+  std::vector<Edge> cell{{{-half, -half}, {0, -1, 0}, half},
+                         {{half, -half}, {1, 0, 0}, half},
+                         {{half, half}, {0, 1, 0}, half},
+                         {{-half, half}, {-1, 0, 0}, half}};
   std::vector<std::pair<double, std::uint32_t>> near;
   grid.visit_near(seeds[i], [&](std::uint32_t j) {
     if (j != i) near.emplace_back(wrapped_distance(seeds[i], seeds[j], side), j);

@@ -30,11 +30,7 @@ std::vector<JointSet> rhombohedral_sets(JointSet set) {
 }
 
 JointSet joint_set(const Vec3& normal, double kappa, double share, double radius_lo, double radius_hi) {
-  return {.normal = normal,
-          .kappa = kappa,
-          .share = share,
-          .radius_lo = radius_lo,
-          .radius_hi = radius_hi};
+  return {.normal = normal, .kappa = kappa, .share = share, .radius_lo = radius_lo, .radius_hi = radius_hi};
 }
 
 double radius_of(const JointSet& set, double u) {
@@ -50,8 +46,8 @@ class SetDiscs {
   /// @param reach  Metres beyond which discs do not mind each other.
   SetDiscs(double side, double reach) : side_(side), grid_(side, reach) {}
 
-  /// Blue noise by rejection: the first candidate with room, or the one with most room. Centres keep `spacing`, and discs
-  /// that lie over each other keep `shadow` along the normal.
+  /// Blue noise by rejection: the first candidate with room, or the one with most room. Centres keep `spacing`, and
+  /// discs that lie over each other keep `shadow` along the normal.
   [[nodiscard]] Vec3 draw_centre(const Vec3& normal, double radius, double spacing, double shadow, Rng& rng) const {
     Vec3 best{0.0};
     double best_room = -1.0;
@@ -106,12 +102,18 @@ std::size_t next_set(const JointPattern& pattern, const std::vector<SetDiscs>& d
 
 std::string_view name(BlockType type) noexcept {
   switch (type) {
-    case BlockType::Equidimensional: return "equidimensional";
-    case BlockType::Rhombohedral: return "rhombohedral";
-    case BlockType::Polyhedral: return "polyhedral";
-    case BlockType::Tabular: return "tabular";
-    case BlockType::Columnar: return "columnar";
-    case BlockType::Prismatic: return "prismatic";
+    case BlockType::Equidimensional:
+      return "equidimensional";
+    case BlockType::Rhombohedral:
+      return "rhombohedral";
+    case BlockType::Polyhedral:
+      return "polyhedral";
+    case BlockType::Tabular:
+      return "tabular";
+    case BlockType::Columnar:
+      return "columnar";
+    case BlockType::Prismatic:
+      return "prismatic";
   }
   return "unknown";
 }

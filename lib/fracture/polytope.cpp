@@ -13,7 +13,8 @@ constexpr int kBallSteps = 96;
 constexpr double kBallShrink = 0.92;
 
 // Corners of a new face, in order around its normal.
-std::vector<std::uint32_t> ordered(std::vector<std::uint32_t> corners, const std::vector<Vec3>& vertices, const Vec3& n) {
+std::vector<std::uint32_t> ordered(std::vector<std::uint32_t> corners, const std::vector<Vec3>& vertices,
+                                   const Vec3& n) {
   Vec3 middle{0.0};
   for (const std::uint32_t v : corners) middle += vertices[v];
   middle /= static_cast<double>(corners.size());
@@ -59,8 +60,8 @@ double Polytope::volume() const noexcept {
   double six = 0.0;
   for (const Face& face : faces)
     for (std::size_t i = 2; i < face.loop.size(); ++i)
-      six += glm::dot(vertices[face.loop[0]] - o,
-                      glm::cross(vertices[face.loop[i - 1]] - o, vertices[face.loop[i]] - o));
+      six +=
+          glm::dot(vertices[face.loop[0]] - o, glm::cross(vertices[face.loop[i - 1]] - o, vertices[face.loop[i]] - o));
   return six / 6.0;
 }
 
@@ -79,9 +80,10 @@ Interval Polytope::distances(const Plane& plane) const noexcept {
 Polytope box_polytope(const Box& box) {
   Polytope result;
   for (int corner = 0; corner < 8; ++corner)
-    result.vertices.push_back({corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
-                               corner & 4 ? box.hi.z : box.lo.z});
-  constexpr std::uint32_t kLoops[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+    result.vertices.push_back(
+        {corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y, corner & 4 ? box.hi.z : box.lo.z});
+  constexpr std::uint32_t kLoops[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                                          {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
   for (int side = 0; side < 6; ++side) {
     Polytope::Face face;
     face.plane.normal = Vec3(0.0);

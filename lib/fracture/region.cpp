@@ -8,14 +8,15 @@
 namespace outcrop {
 namespace {
 
-constexpr int kLongestNormal = 9;             // |m|² of the whole vectors that a normal may be turned to.
-constexpr double kLengthPenalty = 8.0 * kPi / 180.0;  // Radians of bend that one more tile of |m| is worth: long m, many planes.
-constexpr double kLargestBend = 30.0 * kPi / 180.0;   // Radians; beyond it a joint is added instead.
-constexpr double kBeddingBend = 20.0 * kPi / 180.0;   // Radians between a slab's normal and a joint that runs along it.
-constexpr double kBeddingRadius = 0.75;  // Of the side: wider joints cross the whole tile.
-constexpr double kSameSize = 0.5;             // Discs of at least this share of the largest radius may close a region.
-constexpr double kSteepest = 0.82;            // |cos| between the walls of a rod: about 35°.
-constexpr double kAcross = 0.5;               // |cos| between a rod's direction and the normal that cuts it.
+constexpr int kLongestNormal = 9;  // |m|² of the whole vectors that a normal may be turned to.
+constexpr double kLengthPenalty =
+    8.0 * kPi / 180.0;  // Radians of bend that one more tile of |m| is worth: long m, many planes.
+constexpr double kLargestBend = 30.0 * kPi / 180.0;  // Radians; beyond it a joint is added instead.
+constexpr double kBeddingBend = 20.0 * kPi / 180.0;  // Radians between a slab's normal and a joint that runs along it.
+constexpr double kBeddingRadius = 0.75;              // Of the side: wider joints cross the whole tile.
+constexpr double kSameSize = 0.5;   // Discs of at least this share of the largest radius may close a region.
+constexpr double kSteepest = 0.82;  // |cos| between the walls of a rod: about 35°.
+constexpr double kAcross = 0.5;     // |cos| between a rod's direction and the normal that cuts it.
 
 int dot(const IVec3& a, const IVec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
@@ -122,7 +123,8 @@ bool RegionSplitter::is_spent(const Region& region, int disc) const {
   return std::find(region.spent.begin(), region.spent.end(), disc) != region.spent.end();
 }
 
-// A plane closes on the torus when its normal is a whole vector m; it passes the tile |m| times, so that short m are better.
+// A plane closes on the torus when its normal is a whole vector m; it passes the tile |m| times, so that short m are
+// better.
 RegionSplitter::Closing RegionSplitter::torus_closing() {
   struct Candidate {
     double cost, radius;
@@ -190,7 +192,8 @@ RegionSplitter::Closing RegionSplitter::slab_closing(const Region& slab) {
     const Disc& disc = discs_[static_cast<std::size_t>(i)];
     if (is_spent(slab, i)) continue;
     const double middle = 0.5 * (ceiling.distance(disc.centre) - floor.distance(disc.centre));
-    const double turns = -std::floor(middle / pitch + 0.5) * (glm::dot(Vec3(across), ceiling.normal) > 0.0 ? 1.0 : -1.0);
+    const double turns =
+        -std::floor(middle / pitch + 0.5) * (glm::dot(Vec3(across), ceiling.normal) > 0.0 ? 1.0 : -1.0);
     const Vec3 centre = disc.centre + options_.side * turns * Vec3(across);
     if (std::max(ceiling.distance(centre), floor.distance(centre)) > extent(disc, ceiling.normal)) continue;
     for (const Way& way : ways) {
@@ -199,8 +202,8 @@ RegionSplitter::Closing RegionSplitter::slab_closing(const Region& slab) {
       const double length = glm::length(flat);
       const double bend = angle(length);
       if (bend > kLargestBend || std::abs(glm::dot(flat / length, ceiling.normal)) > kSteepest) continue;
-      candidates.push_back({bend + kLengthPenalty * (glm::length(Vec3(way.w)) - 1.0), disc.radius, i, flat / length, centre,
-                            way.w, way.step, bend});
+      candidates.push_back({bend + kLengthPenalty * (glm::length(Vec3(way.w)) - 1.0), disc.radius, i, flat / length,
+                            centre, way.w, way.step, bend});
     }
   }
   Closing closing;
@@ -288,8 +291,8 @@ Region RegionSplitter::close(Region region, const Closing& closing) {
   return region;
 }
 
-// Joints about as wide as the tile that run along a slab are bedding: they part it into layers, each of which is closed by
-// joints of its own, so that small joints need not cross the whole tile.
+// Joints about as wide as the tile that run along a slab are bedding: they part it into layers, each of which is closed
+// by joints of its own, so that small joints need not cross the whole tile.
 std::vector<Region> RegionSplitter::bedded(Region slab) {
   const Vec3 up = slab.walls[1].plane.normal;
   const double floor = slab.walls[0].plane.offset;

@@ -8,8 +8,8 @@
 
 namespace outcrop {
 
-/// The tile's lattice is side · Z³. A region is convex in space and repeats by its periods: three (the whole torus), two (a
-/// slab), one (a rod) or none (a cell). Its samples are moved by whole tiles to lie in it, up to its periods.
+/// The tile's lattice is side · Z³. A region is convex in space and repeats by its periods: three (the whole torus),
+/// two (a slab), one (a rod) or none (a cell). Its samples are moved by whole tiles to lie in it, up to its periods.
 struct Region {
   struct Wall {
     Plane plane;
@@ -59,6 +59,7 @@ class RegionSplitter {
 };
 
 /// Columns along z: the Voronoi cells of evenly spread seeds in the plane, as rods that repeat by one tile along z.
-[[nodiscard]] std::vector<Region> column_regions(const std::vector<Vec3>& samples, double side, double width, Seed seed);
+[[nodiscard]] std::vector<Region> column_regions(const std::vector<Vec3>& samples, double side, double width,
+                                                 Seed seed);
 
 }  // namespace outcrop

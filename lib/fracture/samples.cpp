@@ -33,8 +33,7 @@ class MaximalSampler {
     std::stable_sort(offsets_.begin(), offsets_.end(), [](const IVec3& a, const IVec3& b) {
       return a.x * a.x + a.y * a.y + a.z * a.z < b.x * b.x + b.y * b.y + b.z * b.z;
     });
-    for (const IVec3& o : offsets_)
-      steps_.push_back((static_cast<std::ptrdiff_t>(o.z) * count_ + o.y) * count_ + o.x);
+    for (const IVec3& o : offsets_) steps_.push_back((static_cast<std::ptrdiff_t>(o.z) * count_ + o.y) * count_ + o.x);
   }
 
   std::vector<Vec3> run(Seed seed, const Task& task) {
@@ -118,8 +117,8 @@ class MaximalSampler {
   // whole tiles to lie beside the cube.
   template <class F>
   bool visit_around(const IVec3& base, F&& visit) const {
-    const bool is_inner = glm::min(base.x, glm::min(base.y, base.z)) >= 2 &&
-                          glm::max(base.x, glm::max(base.y, base.z)) < count_ - 2;
+    const bool is_inner =
+        glm::min(base.x, glm::min(base.y, base.z)) >= 2 && glm::max(base.x, glm::max(base.y, base.z)) < count_ - 2;
     if (is_inner) {  // the common case, without wrapping: half of the time goes here
       const std::int32_t* const cell = &sample_in_[index(base)];
       for (const std::ptrdiff_t step : steps_)
@@ -150,7 +149,7 @@ class MaximalSampler {
   double spacing_;
   int count_;
   std::vector<std::int32_t> sample_in_;
-  std::vector<IVec3> offsets_;        // Cubes around a cube that may hold a sample within the spacing.
+  std::vector<IVec3> offsets_;         // Cubes around a cube that may hold a sample within the spacing.
   std::vector<std::ptrdiff_t> steps_;  // The same as steps in sample_in_.
   std::vector<Vec3> samples_;
 };

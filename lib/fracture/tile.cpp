@@ -33,9 +33,10 @@ void check(const TileOptions& options, double spacing) {
   require(spacing > 0.0 && spacing <= options.side / 8.0, "spacing", "in (0, side / 8]", spacing);
   require(options.neighbour_factor >= 1.0 && options.neighbour_factor <= 4.0, "neighbour_factor", "in [1, 4]",
           options.neighbour_factor);
-  require(options.neighbour_factor * spacing < options.side / 2.0, "neighbour_factor", "below half the side over the spacing",
-          options.neighbour_factor);
-  require(options.aperture >= 0.0 && options.aperture < spacing, "aperture", "≥ 0 and below the spacing", options.aperture);
+  require(options.neighbour_factor * spacing < options.side / 2.0, "neighbour_factor",
+          "below half the side over the spacing", options.neighbour_factor);
+  require(options.aperture >= 0.0 && options.aperture < spacing, "aperture", "≥ 0 and below the spacing",
+          options.aperture);
   require(std::isfinite(options.rounding) && options.rounding >= 0.0, "rounding", "≥ 0 and finite", options.rounding);
   require(options.min_block_samples >= 1, "min_block_samples", "≥ 1", options.min_block_samples);
 }
@@ -89,7 +90,8 @@ Block block_of(const Cluster& cluster, const TileOptions& options) {
   std::vector<Vec3> inside;
   for (const Vec3& p : cluster.positions) {
     const Vec3 q = p - ball.centre;
-    if (std::all_of(block.planes.begin(), block.planes.end(), [&](const Plane& plane) { return plane.distance(q) <= 0.0; }))
+    if (std::all_of(block.planes.begin(), block.planes.end(),
+                    [&](const Plane& plane) { return plane.distance(q) <= 0.0; }))
       inside.push_back(q);
   }
   block.anchors = spread(inside, kAnchors);

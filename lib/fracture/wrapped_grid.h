@@ -10,7 +10,8 @@
 
 namespace outcrop {
 
-/// Points of [0, side)³ in cubic cells of at least `reach` metres: whatever lies within `reach` is in the 27 cells around.
+/// Points of [0, side)³ in cubic cells of at least `reach` metres: whatever lies within `reach` is in the 27 cells
+/// around.
 class WrappedGrid {
  public:
   WrappedGrid(double side, double reach)

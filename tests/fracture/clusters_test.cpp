@@ -33,7 +33,8 @@ Case split(const JointPattern& pattern, Seed seed) {
   Case c;
   c.samples = poisson_samples(kSide, kSpacing, seed);
   c.discs = draw_discs(pattern, kSide, seed);
-  c.clusters = split_samples(c.samples, neighbour_graph(c.samples, kSide, 1.6 * kSpacing), c.discs, options_of(pattern), seed);
+  c.clusters =
+      split_samples(c.samples, neighbour_graph(c.samples, kSide, 1.6 * kSpacing), c.discs, options_of(pattern), seed);
   return c;
 }
 
@@ -158,7 +159,9 @@ TEST(Clusters, DoNotDependOnTheOrderOfTheSamples) {
     const Clusters other =
         split_samples(mixed, neighbour_graph(mixed, kSide, 1.6 * kSpacing), c.discs, options_of(pattern), 3);
     ASSERT_EQ(other.list.size(), c.clusters.list.size());
-    const auto less = [](const Vec3& a, const Vec3& b) { return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z; };
+    const auto less = [](const Vec3& a, const Vec3& b) {
+      return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
+    };
     for (std::size_t i = 0; i < other.list.size(); ++i) {
       ASSERT_EQ(other.list[i].shape.vertices, c.clusters.list[i].shape.vertices);
       std::vector<Vec3> a = other.list[i].positions;

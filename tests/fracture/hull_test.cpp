@@ -43,7 +43,8 @@ TEST(ThickHull, MakesCubesBarsAndPlatesOfFlatSets) {
 }
 
 TEST(PrincipalSizes, AreTheEdgesOfABox) {
-  const std::vector<Vec3> corners{{0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {1, 2, 0}, {0, 0, 5}, {1, 0, 5}, {0, 2, 5}, {1, 2, 5}};
+  const std::vector<Vec3> corners{{0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {1, 2, 0},
+                                  {0, 0, 5}, {1, 0, 5}, {0, 2, 5}, {1, 2, 5}};
   const double c = std::cos(0.7);
   const double s = std::sin(0.7);
   std::vector<Vec3> turned;

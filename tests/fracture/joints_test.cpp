@@ -25,7 +25,8 @@ TEST(FisherDirection, HasTheDistributionsMeanLength) {
       sum += d;
     }
     const double expected = 1.0 / std::tanh(kappa) - 1.0 / kappa;
-    EXPECT_NEAR(glm::dot(sum / double(n), mean), expected, 4.0 * (1.0 - expected + 1e-6) / std::sqrt(n) + 1e-6) << kappa;
+    EXPECT_NEAR(glm::dot(sum / double(n), mean), expected, 4.0 * (1.0 - expected + 1e-6) / std::sqrt(n) + 1e-6)
+        << kappa;
     EXPECT_LT(glm::length(glm::cross(sum / double(n), mean)), 4.0 / std::sqrt(n)) << kappa;
   }
 }
@@ -90,15 +91,17 @@ TEST(DrawDiscs, ScaleWithTheTile) {
 
 TEST(DrawDiscs, HaveTruncatedPowerLawRadii) {
   // Median of r^−(a+1) on [lo, hi]: lo (1 − (1 − (lo/hi)^a) / 2)^(−1/a).
-  const JointPattern pattern{
-      .sets = {{.kappa = 50.0, .radius_lo = 0.5, .radius_hi = 8.0, .radius_exponent = 1.6}}, .discs = 4000, .centre_spacing = 0.0};
+  const JointPattern pattern{.sets = {{.kappa = 50.0, .radius_lo = 0.5, .radius_hi = 8.0, .radius_exponent = 1.6}},
+                             .discs = 4000,
+                             .centre_spacing = 0.0};
   const auto discs = draw_discs(pattern, kSide, 1);
   const double median = 0.5 * std::pow(1.0 - 0.5 * (1.0 - std::pow(0.5 / 8.0, 1.6)), -1.0 / 1.6);
   EXPECT_NEAR(discs[2000].radius, median, 0.03 * median);
 }
 
 TEST(DrawDiscs, MeetScanLinesAsTheirIntensitySays) {
-  // P10 along t is P32 E|n · t|: 1/2 for uniform normals. Lines along an axis of the torus close, so there is no border.
+  // P10 along t is P32 E|n · t|: 1/2 for uniform normals. Lines along an axis of the torus close, so there is no
+  // border.
   const JointPattern pattern{.sets = {{.kappa = 1.0, .radius_lo = 1.0, .radius_hi = 3.0}},
                              .discs = 2000,
                              .irregular_share = 1.0,

@@ -55,8 +55,8 @@ TEST(Polytope, KeepsSharedCornersWhenAPlanePassesThroughThem) {
 TEST(InscribedBall, IsTheLargestToOnePercent) {
   EXPECT_NEAR(inscribed_ball(box_polytope({Vec3(0.0), Vec3(1, 8, 20)})).radius, 0.5, 0.005);
   // A corner cut off a cube: r = 1 / (3 + √3).
-  const Polytope corner =
-      clipped(box_polytope({Vec3(0.0), Vec3(1.0)}), {glm::normalize(Vec3(1, 1, 1)), -1.0 / std::sqrt(3.0)}, 0, kTolerance);
+  const Polytope corner = clipped(box_polytope({Vec3(0.0), Vec3(1.0)}),
+                                  {glm::normalize(Vec3(1, 1, 1)), -1.0 / std::sqrt(3.0)}, 0, kTolerance);
   const Ball ball = inscribed_ball(corner);
   EXPECT_NEAR(ball.radius, 1.0 / (3.0 + std::sqrt(3.0)), 0.002);
   for (const Polytope::Face& face : corner.faces) EXPECT_LE(face.plane.distance(ball.centre), -ball.radius + 1e-12);

@@ -84,7 +84,8 @@ TEST(NeighbourGraph, HoldsExactlyThePairsWithinTheRadius) {
       std::vector<std::uint32_t> expected;
       for (std::uint32_t j = 0; j < samples.size(); ++j)
         if (j != i && wrapped_distance(samples[i], samples[j], side) <= radius) expected.push_back(j);
-      std::vector<std::uint32_t> found(graph.targets.begin() + graph.first[i], graph.targets.begin() + graph.first[i + 1]);
+      std::vector<std::uint32_t> found(graph.targets.begin() + graph.first[i],
+                                       graph.targets.begin() + graph.first[i + 1]);
       std::sort(found.begin(), found.end());
       ASSERT_EQ(found, expected) << "sample " << i << ", radius " << radius;
     }

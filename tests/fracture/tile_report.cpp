@@ -30,11 +30,16 @@ double field_bytes(const Tile& tile) {
 
 const char* paper_counts(BlockType type) {  // Paris et al. 2020, Table 1: discs / blocks / samples a block
   switch (type) {
-    case BlockType::Equidimensional: return "15 / 125 / 110";
-    case BlockType::Rhombohedral: return "24 / 78 / 161";
-    case BlockType::Polyhedral: return "44 / 100 / 140";
-    case BlockType::Tabular: return "30 / 82 / 143";
-    default: return "–";
+    case BlockType::Equidimensional:
+      return "15 / 125 / 110";
+    case BlockType::Rhombohedral:
+      return "24 / 78 / 161";
+    case BlockType::Polyhedral:
+      return "44 / 100 / 140";
+    case BlockType::Tabular:
+      return "30 / 82 / 143";
+    default:
+      return "–";
   }
 }
 
@@ -45,8 +50,10 @@ int main() {
   std::puts("Tiles of 20 m with the default options, means over seeds 1 to 8. Written by");
   std::puts("`build/release/bin/outcrop_tile_report > docs/tile_statistics.md`.\n");
   std::puts("## Beside Table 1 of Paris et al. 2020\n");
-  std::puts("| type | samples | discs | blocks (range) | samples a block | paper: discs / blocks / samples a block | joints added "
-            "| chips kept whole | largest turn |");
+  std::puts(
+      "| type | samples | discs | blocks (range) | samples a block | paper: discs / blocks / samples a block | joints "
+      "added "
+      "| chips kept whole | largest turn |");
   std::puts("|---|---|---|---|---|---|---|---|---|");
   std::string shapes;
   for (const BlockType type : kBlockTypes) {
@@ -86,19 +93,24 @@ int main() {
                 samples.value(), joint_pattern(type).discs, blocks.value(), blocks.least, blocks.most,
                 samples.value() / blocks.value(), paper_counts(type), added.value(), chips.value(), turn.most);
     char row[400];
-    std::snprintf(row, sizeof row,
-                  "| %s | %.3f / %.3f | %.4f | %.1f / %.0f | %.1f / %.0f | %.3f | %.0f | %.2f | %.2f | %.2f |\n",
-                  name(type).data(), filled.value(), plain.value(), overlap.most, planes.value(), most.most,
-                  plain_planes.value(), plain_most.most, bytes.value(), volume.value(), variation.value(),
-                  elongation.value(), flatness.value());
+    std::snprintf(
+        row, sizeof row, "| %s | %.3f / %.3f | %.4f | %.1f / %.0f | %.1f / %.0f | %.3f | %.0f | %.2f | %.2f | %.2f |\n",
+        name(type).data(), filled.value(), plain.value(), overlap.most, planes.value(), most.most, plain_planes.value(),
+        plain_most.most, bytes.value(), volume.value(), variation.value(), elongation.value(), flatness.value());
     shapes += row;
   }
   std::puts("\n## Blocks\n");
-  std::puts("Filled: share of the cube inside blocks, ours and of plain hulls of the samples. Planes a block: mean / most, ours and");
-  std::puts("plain. Memory: planes as four floats, with centre, rounding and bounds; Table 2 of the paper has 0.53 to 0.57 MB.");
+  std::puts(
+      "Filled: share of the cube inside blocks, ours and of plain hulls of the samples. Planes a block: mean / most, "
+      "ours and");
+  std::puts(
+      "plain. Memory: planes as four floats, with centre, rounding and bounds; Table 2 of the paper has 0.53 to 0.57 "
+      "MB.");
   std::puts("Elongation and flatness: longest to middle and middle to shortest principal size, geometric means.\n");
-  std::puts("| type | filled, ours / plain | overlap, most | planes, ours | planes, plain | MB | volume, m³ | volume CV | elongation "
-            "| flatness |");
+  std::puts(
+      "| type | filled, ours / plain | overlap, most | planes, ours | planes, plain | MB | volume, m³ | volume CV | "
+      "elongation "
+      "| flatness |");
   std::puts("|---|---|---|---|---|---|---|---|---|---|");
   std::fputs(shapes.c_str(), stdout);
 }

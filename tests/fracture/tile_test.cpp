@@ -130,8 +130,8 @@ TEST(Tile, NeighboursShareFlushFacesAcrossACrackOfTheAperture) {
         EXPECT_TRUE(blocks_at(tile, p + 0.5 * aperture * n).empty()) << name(type);
         const auto beyond = blocks_at(tile, p + (aperture + step) * n);
         if (beyond.empty()) continue;  // the crack between two neighbours
-        const bool is_flush = std::any_of(
-            beyond[0].block->planes.begin(), beyond[0].block->planes.end(), [&](const Plane& plane) {
+        const bool is_flush =
+            std::any_of(beyond[0].block->planes.begin(), beyond[0].block->planes.end(), [&](const Plane& plane) {
               return glm::dot(plane.normal, n) < -1.0 + 1e-9 && std::abs(plane.distance(beyond[0].local) + step) < 1e-8;
             });
         EXPECT_TRUE(is_flush) << name(type);
@@ -199,7 +199,9 @@ TEST(Tile, ComesNearToTableOneOfThePaper) {
 TEST(Tile, HasTheShapesOfItsType) {
   for (const Seed seed : kSeeds) {
     SCOPED_TRACE(seed);
-    const auto along_axes = [](const Vec3& n) { return glm::max(std::abs(n.x), glm::max(std::abs(n.y), std::abs(n.z))) > 0.92; };
+    const auto along_axes = [](const Vec3& n) {
+      return glm::max(std::abs(n.x), glm::max(std::abs(n.y), std::abs(n.z))) > 0.92;
+    };
     const auto level = [](const Vec3& n) { return std::abs(n.z) > 0.97; };
 
     const Tile& equal = paper_tile(BlockType::Equidimensional, seed);
@@ -231,7 +233,8 @@ TEST(Tile, HasTheShapesOfItsType) {
 }
 
 TEST(Tile, HasColumnsWithTheIntensityOfVoronoiPrisms) {
-  // Lateral P32 is the length of Voronoi edges an area: 1.861 d⁻¹ √(√3/2)… between hexagons, 2/d, and Poisson seeds, 2√q.
+  // Lateral P32 is the length of Voronoi edges an area: 1.861 d⁻¹ √(√3/2)… between hexagons, 2/d, and Poisson seeds,
+  // 2√q.
   const Tile& tile = paper_tile(BlockType::Columnar, 1);
   const double width = joint_pattern(BlockType::Columnar).column_width;
   double area = 0.0;
@@ -274,8 +277,10 @@ TEST(Tile, KeepsChipsWhenAsked) {
   JointPattern pattern = joint_pattern(BlockType::Polyhedral);
   pattern.least_thickness = 0.0;
   pattern.least_angle = 0.0;
-  const Tile chips = make_tile({.type = BlockType::Polyhedral, .pattern = pattern, .spacing = 1.2, .min_block_samples = 1}, 2);
-  const Tile merged = make_tile({.type = BlockType::Polyhedral, .pattern = pattern, .spacing = 1.2, .min_block_samples = 12}, 2);
+  const Tile chips =
+      make_tile({.type = BlockType::Polyhedral, .pattern = pattern, .spacing = 1.2, .min_block_samples = 1}, 2);
+  const Tile merged =
+      make_tile({.type = BlockType::Polyhedral, .pattern = pattern, .spacing = 1.2, .min_block_samples = 12}, 2);
   EXPECT_GT(chips.blocks.size(), merged.blocks.size());
   EXPECT_TRUE(std::any_of(chips.blocks.begin(), chips.blocks.end(), [](const Block& b) { return b.sample_count < 4; }));
   EXPECT_EQ(chips.statistics.overlap_share, 0.0);

@@ -25,33 +25,36 @@ struct Cluster {
 
 struct ClusterOptions {
   double side = 20.0;
-  double sight = 1.2;            ///< Metres: two samples within it see each other; the graph's radius.
-  int min_samples = 12;          ///< A joint ends rather than part fewer samples from a cluster.
-  double min_inradius = 0.2;     ///< Metres: nor does it part off a piece without room for a ball of this radius.
-  double covered_share = 0.0;    ///< See JointPattern.
-  double least_angle = 0.0;      ///< See JointPattern.
-  double longest = 19.0;         ///< Metres along x, y or z; joints are added to halve longer cells.
-  double column_width = 0.0;     ///< Metres; > 0: columns along z first.
+  double sight = 1.2;          ///< Metres: two samples within it see each other; the graph's radius.
+  int min_samples = 12;        ///< A joint ends rather than part fewer samples from a cluster.
+  double min_inradius = 0.2;   ///< Metres: nor does it part off a piece without room for a ball of this radius.
+  double covered_share = 0.0;  ///< See JointPattern.
+  double least_angle = 0.0;    ///< See JointPattern.
+  double longest = 19.0;       ///< Metres along x, y or z; joints are added to halve longer cells.
+  double column_width = 0.0;   ///< Metres; > 0: columns along z first.
 };
 
 struct Clusters {
   std::vector<Cluster> list;
   std::size_t stopped_joints = 0;  ///< Joints that ended because they would have cut off a chip.
-  std::size_t added_joints = 0;    ///< Joints that no disc stands for; they keep pieces from wrapping, or from being too long.
-  double largest_bend = 0.0;       ///< Largest turn of a disc's normal, radians.
+  std::size_t added_joints =
+      0;  ///< Joints that no disc stands for; they keep pieces from wrapping, or from being too long.
+  double largest_bend = 0.0;  ///< Largest turn of a disc's normal, radians.
 };
 
-/// Splits the torus by joints until every disc has been heard: convex cells that tile space, every sample in one of them.
+/// Splits the torus by joints until every disc has been heard: convex cells that tile space, every sample in one of
+/// them.
 ///
-/// A disc that parts samples which see each other through it grows inside their cell until it splits the cell; larger discs
-/// come first, so that smaller joints end at larger ones. Each cell is bounded by planes of joints alone, neighbours share
-/// them, and no cell meets itself around the torus. On a torus a plane closes only when its normal is a small whole vector:
-/// the first joint is turned to the nearest one, the second is turned about one axis only, all others keep their planes.
-/// See docs/decisions/fracture.md. The cells do not depend on the order of the samples.
+/// A disc that parts samples which see each other through it grows inside their cell until it splits the cell; larger
+/// discs come first, so that smaller joints end at larger ones. Each cell is bounded by planes of joints alone,
+/// neighbours share them, and no cell meets itself around the torus. On a torus a plane closes only when its normal is
+/// a small whole vector: the first joint is turned to the nearest one, the second is turned about one axis only, all
+/// others keep their planes. See docs/decisions/fracture.md. The cells do not depend on the order of the samples.
 ///
 /// @param discs  Largest first, as draw_discs returns them.
 /// Cost: O(samples · discs that reach their cluster), plus O(discs · cells that do not yet wrap).
-[[nodiscard]] Clusters split_samples(const std::vector<Vec3>& samples, const Graph& graph, const std::vector<Disc>& discs,
-                                     const ClusterOptions& options, Seed seed, const Task& task = {});
+[[nodiscard]] Clusters split_samples(const std::vector<Vec3>& samples, const Graph& graph,
+                                     const std::vector<Disc>& discs, const ClusterOptions& options, Seed seed,
+                                     const Task& task = {});
 
 }  // namespace outcrop

@@ -8,9 +8,8 @@
 
 namespace outcrop {
 
-/// The convex hull as triangles, counter-clockwise from outside; nothing when all points lie in a plane, to 1e-9 of their
-/// extent, or are fewer than four.
-/// Cost: O(n log n) expected. Method: quickhull with exact predicates @cite cgal.
+/// The convex hull as triangles, counter-clockwise from outside; nothing when all points lie in a plane, to 1e-9 of
+/// their extent, or are fewer than four. Cost: O(n log n) expected. Method: quickhull with exact predicates @cite cgal.
 [[nodiscard]] std::optional<BlockMesh> convex_hull(std::span<const Vec3> points);
 
 /// The same for any points, one at least: a point, a line or a flat set is thickened to a cube, a bar or a plate of

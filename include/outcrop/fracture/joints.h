@@ -21,17 +21,17 @@ inline constexpr BlockType kBlockTypes[] = {BlockType::Equidimensional, BlockTyp
 /// A fracture disc in tile space (a torus of the tile's side).
 struct Disc {
   Vec3 centre{0.0};
-  double radius = 0.0;      ///< Metres.
-  Vec3 normal{0, 0, 1};     ///< Unit.
-  int set = -1;             ///< Joint set it was drawn from; -1: irregular.
+  double radius = 0.0;   ///< Metres.
+  Vec3 normal{0, 0, 1};  ///< Unit.
+  int set = -1;          ///< Joint set it was drawn from; -1: irregular.
 };
 
 /// A family of discs about one mean orientation.
 struct JointSet {
-  Vec3 normal{0, 0, 1};       ///< Mean normal in tile space, unit (z: bedding normal).
-  double kappa = 300.0;       ///< Fisher concentration about the normal, > 0; angular deviation is about 81°/√κ.
-  double share = 1.0;         ///< Relative number of discs.
-  double radius_lo = 5.0;     ///< Metres at a 20 m tile; scaled with the tile's side.
+  Vec3 normal{0, 0, 1};    ///< Mean normal in tile space, unit (z: bedding normal).
+  double kappa = 300.0;    ///< Fisher concentration about the normal, > 0; angular deviation is about 81°/√κ.
+  double share = 1.0;      ///< Relative number of discs.
+  double radius_lo = 5.0;  ///< Metres at a 20 m tile; scaled with the tile's side.
   double radius_hi = 5.0;
   /// a of a radius density ∝ r^−(a+1) on [radius_lo, radius_hi], as fracture networks are fitted; 0: uniform.
   double radius_exponent = 0.0;
@@ -44,8 +44,8 @@ struct JointPattern {
   double irregular_share = 0.0;  ///< Share of the discs whose normals are uniform on the sphere.
   double centre_spacing = 2.0;   ///< Smallest distance between disc centres (of one set), metres at 20 m.
   double column_width = 0.0;     ///< > 0: columns of this mean width along z first (Voronoi cells), then the sets.
-  /// A disc splits a block that it enters when it covers at least this share of the cut, [0, 1]: at 0 a joint grows from
-  /// the least touch, at 1 it never grows beyond its disc.
+  /// A disc splits a block that it enters when it covers at least this share of the cut, [0, 1]: at 0 a joint grows
+  /// from the least touch, at 1 it never grows beyond its disc.
   double covered_share = 0.0;
   /// The stress shadow of joints: none forms where it would part off a piece thinner than this (the diameter of its
   /// largest ball), metres at 20 m. 0: as thin as the samples can tell.

@@ -36,26 +36,26 @@ struct BlockMesh {
 
 /// One convex block. Positions are relative to `centre`, in metres, in the tile's axes.
 struct Block {
-  Vec3 centre{0.0};            ///< In [0, side)³. The block may reach across the faces: it is one block all the same.
-  std::vector<Plane> planes;   ///< In a fixed order; each bounds a face.
-  double rounding = 0.0;       ///< R for this block.
-  double inradius = 0.0;       ///< Of the largest ball found around the centre.
-  Box bounds;                  ///< Of the planes' polytope, unrounded.
-  BlockMesh hull;              ///< CGAL's hull of the polytope's vertices.
-  double volume = 0.0;         ///< Of the hull, m³.
-  std::vector<Vec3> anchors;   ///< Spread through the block, for presence: some 8 to 32 of its samples.
+  Vec3 centre{0.0};           ///< In [0, side)³. The block may reach across the faces: it is one block all the same.
+  std::vector<Plane> planes;  ///< In a fixed order; each bounds a face.
+  double rounding = 0.0;      ///< R for this block.
+  double inradius = 0.0;      ///< Of the largest ball found around the centre.
+  Box bounds;                 ///< Of the planes' polytope, unrounded.
+  BlockMesh hull;             ///< CGAL's hull of the polytope's vertices.
+  double volume = 0.0;        ///< Of the hull, m³.
+  std::vector<Vec3> anchors;  ///< Spread through the block, for presence: some 8 to 32 of its samples.
   std::uint32_t sample_count = 0;
 };
 
 /// What happened on the way, for reports; compare with Table 1 of the paper.
 struct TileStatistics {
   std::size_t samples = 0, discs = 0, clusters = 0;
-  std::size_t merged_chips = 0;     ///< Chips that stay with their block, because the joint ends instead of parting them.
-  std::size_t added_joints = 0;     ///< Joints that no disc stands for; without them pieces would wrap around the tile.
-  double largest_bend = 0.0;        ///< Largest turn of a disc's normal that made it close around the tile, radians.
+  std::size_t merged_chips = 0;  ///< Chips that stay with their block, because the joint ends instead of parting them.
+  std::size_t added_joints = 0;  ///< Joints that no disc stands for; without them pieces would wrap around the tile.
+  double largest_bend = 0.0;     ///< Largest turn of a disc's normal that made it close around the tile, radians.
   double seconds = 0.0;
-  double filled_share = 0.0;        ///< Of the cube, by blocks; from volumes.
-  double overlap_share = 0.0;       ///< Of the cube covered twice or more, by random points.
+  double filled_share = 0.0;   ///< Of the cube, by blocks; from volumes.
+  double overlap_share = 0.0;  ///< Of the cube covered twice or more, by random points.
   double mean_planes = 0.0;
   std::size_t max_planes = 0;
   double plain_filled_share = 0.0;  ///< The same for plain hulls of the clusters, without snapping to joints.
