@@ -29,7 +29,7 @@ endfunction()
 # Flags for everything that is ours; not part of the installed interface.
 add_library(outcrop_options INTERFACE)
 target_compile_features(outcrop_options INTERFACE cxx_std_20)
-target_compile_options(outcrop_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wno-psabi -Wno-missing-field-initializers -ffp-contract=off)
+target_compile_options(outcrop_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wno-psabi -Wno-missing-field-initializers -Wno-restrict -ffp-contract=off)
 target_link_options(outcrop_options INTERFACE -Wl,--as-needed)
 if(OUTCROP_SANITIZE)
   target_compile_options(outcrop_options INTERFACE -fsanitize=${OUTCROP_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)

@@ -16,8 +16,9 @@
 namespace outcrop {
 namespace {
 
-constexpr double kReachInBlocks = 1.3;       // Mean block sizes; recess 1 hides the base behind whole blocks.
-constexpr double kRasterPerReach = 6.0;      // Raster nodes of the rock zone across its reach.
+constexpr double kReachInBlocks = 1.8;       // Mean block sizes; recess 1 hides the base behind whole blocks.
+constexpr double kRasterPerReach = 12.0;     // Raster nodes of the rock zone across its reach …
+constexpr double kRasterNodes = 4e6;         // … but no more than this many in all: 40 bytes each, three layers.
 constexpr double kPlaceableShare = 0.7;      // Of a tile's volume; below that, its blocks are too small for the resolution.
 constexpr double kCellsInSmallestBlock = 2.0;  // Design decision 10.
 constexpr double kClosureSlope = 0.05;       // Blocks grow by this much a metre below the crack floor.
@@ -50,13 +51,10 @@ class HoleField final : public Field {
  public:
   explicit HoleField(Heightfield heightfield) : heightfield_(std::move(heightfield)) {}
   void values(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept override {
-    for (std::size_t i = 0; i < points.size(); ++i) values[i] = heightfield_.hole_distance(points.x[i], points.y[i]);
-    constexpr double kStep = 1e-3;
-    for (std::size_t i = 0; i < gradients.size(); ++i) {
-      const double x = points.x[i], y = points.y[i];
-      gradients[i] = Vec3(heightfield_.hole_distance(x + kStep, y) - heightfield_.hole_distance(x - kStep, y),
-                          heightfield_.hole_distance(x, y + kStep) - heightfield_.hole_distance(x, y - kStep), 0.0) /
-                     (2.0 * kStep);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Heightfield::Sample hole = heightfield_.hole_at(points.x[i], points.y[i]);
+      values[i] = hole.h;
+      if (!gradients.empty()) gradients[i] = Vec3(hole.hx, hole.hy, 0.0);
     }
   }
   [[nodiscard]] double lipschitz() const noexcept override { return std::sqrt(2.0); }
@@ -71,6 +69,7 @@ class HoleField final : public Field {
 struct MadeRock {
   Tile tile;
   double block_size = 0.0;  ///< Cube root of the mean block volume.
+  double reach = 0.0;       ///< Of the ground behind and before its blocks; 0 when it is not placeable.
   bool placeable = false;   ///< Large enough for the resolution.
 };
 
@@ -167,7 +166,7 @@ Amplified amplify(const Heightfield& heightfield, const StrataFile& strata_file,
   if (strata_file.strata.layers.empty()) used[0] = 1;
   for (const Stratum& layer : strata_file.strata.layers) used[layer.material] = 1;
   std::vector<MadeRock> rocks(material_count);
-  double largest_block = 0.0;
+  double reach = 0.0;
   for (std::size_t m = 0; m < material_count; ++m) {
     const RockMaterial& material = strata_file.materials[m];
     result.label_names.push_back(material.name);
@@ -178,7 +177,8 @@ Amplified amplify(const Heightfield& heightfield, const StrataFile& strata_file,
     result.rocks.push_back(report_of(material, rocks[m]));
     result.mean_block_size = std::max(result.mean_block_size, rocks[m].block_size);
     if (!rocks[m].placeable) continue;
-    largest_block = std::max(largest_block, rocks[m].block_size);
+    rocks[m].reach = kReachInBlocks * rocks[m].block_size;
+    reach = std::max(reach, rocks[m].reach);
   }
   const Label ground = static_cast<Label>(material_count);
   result.label_names.push_back("ground");
@@ -196,13 +196,17 @@ Amplified amplify(const Heightfield& heightfield, const StrataFile& strata_file,
   }
   const auto stratified = std::make_shared<StratifiedTerrain>(filled, strata);
   const Placement& placement = strata_file.placement;
-  const double reach = kReachInBlocks * placement.recess * largest_block;
   FieldPtr rock_field;
-  RockZone zone{heightfield, heightfield, heightfield, true};
+  RockZone zone{heightfield, heightfield, heightfield, placement.slope, true};
+  const double margin = 2.0 * reach * std::max(1.0, placement.recess);
+  const Vec2 zone_extent = hi - lo + 2.0 * margin;
+  const double spacing = std::max(reach / kRasterPerReach, std::sqrt(zone_extent.x * zone_extent.y / kRasterNodes));
   if (reach > 0.0)
     zone = make_rock_zone(heightfield,
-                          {.lo = lo - 2.0 * reach, .hi = hi + 2.0 * reach, .slope = placement.slope, .reach = reach,
-                           .spacing = reach / kRasterPerReach},
+                          {.lo = lo - margin, .hi = hi + margin, .slope = placement.slope, .reach = reach,
+                           .recess = placement.recess,
+                           .reach_at = [&](const Vec3& p) { return rocks[strata.material(p)].reach; },
+                           .spacing = spacing},
                           task);
 
   FieldPtr field = labelled(filled, ground);
@@ -217,7 +221,7 @@ Amplified amplify(const Heightfield& heightfield, const StrataFile& strata_file,
       return base->bound(box).hi > 0.0 && clip->bound(box).lo < 0.0;
     };
     const auto slope = [&](const Vec3& p) { return zone.nearby.at(p.x, p.y).h > 0.0 ? 0.5 * kPi : 0.0; };
-    const Box domain{Vec3(lo - reach, heights.lo - 4.0 * reach), Vec3(hi + reach, heights.hi + 2.0 * reach)};
+    const Box domain{Vec3(lo - reach, heights.lo - 2.0 * margin), Vec3(hi + reach, heights.hi + margin)};
     std::vector<FieldPtr> placed;
     std::size_t report = 0;
     for (std::size_t m = 0; m < material_count; ++m) {
@@ -234,7 +238,7 @@ Amplified amplify(const Heightfield& heightfield, const StrataFile& strata_file,
       // Cracks narrower than two cells are welded everywhere: a mesh would show them as scattered holes.
       const double swelling =
           0.5 * aperture * std::clamp(2.0 - aperture / options.resolution, 0.0, 1.0) * (1.0 + 1e-3);
-      const double crack = placement.crack_depth * size / reach;
+      const double crack = placement.recess > 0.0 ? placement.crack_depth / (kReachInBlocks * placement.recess) : 0.0;
       ReplicationOptions replication{
           .domain = domain,
           .criterion = all_of({distance_between(placement.distance_lo * size, placement.distance_hi * size),
@@ -270,8 +274,8 @@ Amplified amplify(const Heightfield& heightfield, const StrataFile& strata_file,
   }
   result.field = std::move(field);
 
-  const double margin = std::max({3.0 * reach, 4.0 * options.resolution, 0.02 * std::max(hi.x - lo.x, hi.y - lo.y)});
-  result.region = {Vec3(lo, heights.lo - margin), Vec3(hi, top + 2.0 * options.resolution)};
+  const double floor = std::max({1.5 * margin, 4.0 * options.resolution, 0.02 * std::max(hi.x - lo.x, hi.y - lo.y)});
+  result.region = {Vec3(lo, heights.lo - floor), Vec3(hi, top + 2.0 * options.resolution)};
   if (rock_field) {
     task.begin("measuring the rock", 0);
     measure(result, *rock_field, zone, reach, placement.slope, options.seed);

@@ -13,6 +13,8 @@ namespace outcrop {
 namespace {
 
 constexpr std::size_t kChunk = 256;
+constexpr double kRecessGrowth = 4.0;   // Metres of recess radius a metre from the rim: the base hides behind blocks at once.
+constexpr double kAdvanceGrowth = 0.75; // Of advance: blocks come out of the ground gradually.
 
 /// A raster of nodes over a rectangle, rows from the south.
 struct Raster {
@@ -91,7 +93,7 @@ class RockOnTerrain final : public Field {
   RockOnTerrain(FieldPtr terrain, RockZone zone, FieldPtr rock, FieldPtr strata, Label ground, bool has_base,
                 const Box& rectangle)
       : terrain_(std::move(terrain)), zone_(std::move(zone)), rock_(std::move(rock)), strata_(std::move(strata)),
-        ground_(ground), has_base_(has_base) {
+        ground_(ground), cos_slope_(std::cos(zone_.slope)), has_base_(has_base) {
     const Vec2 lo(rectangle.lo), hi(rectangle.hi);
     lipschitz_ = terrain_->lipschitz() + std::max(zone_.recess.slope_bound(lo, hi), zone_.advance.slope_bound(lo, hi));
     if (rock_) lipschitz_ = std::max(lipschitz_, rock_->lipschitz());
@@ -124,10 +126,12 @@ class RockOnTerrain final : public Field {
     for (std::size_t i = 0; i < points.size(); ++i) {
       const Vec3 p = points[i];
       const double recess = zone_.recess.at(p.x, p.y).h;
-      if (recess <= 0.0 && zone_.advance.at(p.x, p.y).h <= 0.0) {
-        labels[i] = ground_;
-      } else if (rock_ && (!has_base_ || rock_->value(p) <= terrain_->value(p) + recess)) {
+      const bool outside = recess <= 0.0 && zone_.advance.at(p.x, p.y).h <= 0.0;
+      if (!outside && rock_ && (!has_base_ || rock_->value(p) <= terrain_->value(p) + recess)) {
         rock_->labels(points.subspan(i, 1), labels.subspan(i, 1));
+      } else {
+        const Vec3 up = terrain_->gradient(p);
+        if (up.z > cos_slope_ * glm::length(up)) labels[i] = ground_;
       }
     }
   }
@@ -199,6 +203,7 @@ class RockOnTerrain final : public Field {
   RockZone zone_;
   FieldPtr rock_, strata_;
   Label ground_;
+  double cos_slope_;
   bool has_base_;
   double lipschitz_ = 1.0;
 };
@@ -213,7 +218,7 @@ RockZone make_rock_zone(const Heightfield& heightfield, const RockZoneOptions& o
                       .spacing = options.spacing};
   const std::size_t count = static_cast<std::size_t>(raster.width) * raster.height;
   const double steep_tangent = std::tan(options.slope);
-  std::vector<float> ground(count);
+  std::vector<float> ground(count), reach(count, static_cast<float>(options.reach));
   std::vector<char> steep(count);
   const auto rows = static_cast<std::size_t>(raster.height);
   task.begin("finding steep ground", 2 * rows);
@@ -232,12 +237,15 @@ RockZone make_rock_zone(const Heightfield& heightfield, const RockZoneOptions& o
           is_steep = s.hx * s.hx + s.hy * s.hy >= steep_tangent * steep_tangent;
           if (heightfield.has_holes()) is_steep = is_steep && heightfield.hole_distance(q.x, q.y) < 0.0;
         }
-      steep[raster.index(column, row)] = is_steep;
+      const std::size_t here = raster.index(column, row);
+      if (is_steep && options.reach_at) reach[here] = static_cast<float>(options.reach_at(Vec3(p, ground[here])));
+      steep[here] = is_steep && reach[here] > 0.0f;
     }
     task.advance();
   }, task);
 
-  const std::vector<Offset> offsets = disc_offsets(options.reach, options.spacing);
+  const double largest_radius = options.reach * std::max(1.0, options.recess);
+  const std::vector<Offset> offsets = disc_offsets(largest_radius, options.spacing);
   std::vector<float> recess(count, 0.0f), advance(count, 0.0f), nearby(count, 0.0f);
   parallel_for(rows, [&](std::size_t r) {
     const int row = static_cast<int>(r);
@@ -251,19 +259,24 @@ RockZone make_rock_zone(const Heightfield& heightfield, const RockZoneOptions& o
         continue;
       }
       nearby[here] = 1.0f;
-      double radius = options.reach;  // Grows from the rim of the steep ground inwards.
+      double rim = largest_radius + options.spacing;  // Distance to ground that is not steep.
       for (const Offset& o : offsets)
         if (!steep[neighbour(o)]) {
-          radius = std::min(radius, o.distance);
+          rim = std::min(rim, o.distance);
           break;
         }
+      // Both radii grow from 0 at the rim, so that the rim is no staircase of the raster.
+      const double depth = rim - options.spacing;
+      const double recess_radius = std::min<double>(kRecessGrowth * depth, options.recess * reach[here]);
+      const double advance_radius = std::min<double>(kAdvanceGrowth * depth, reach[here]);
       float lowest = 0.0f, highest = 0.0f;
       for (const Offset& o : offsets) {
-        const float weight = static_cast<float>(std::clamp(1.0 + (radius - o.distance) / options.spacing, 0.0, 1.0));
-        if (weight <= 0.0f) break;
-        const float difference = weight * (ground[neighbour(o)] - ground[here]);
-        lowest = std::min(lowest, difference);
-        highest = std::max(highest, difference);
+        const auto weight = [&](double radius) {
+          return static_cast<float>(std::clamp(1.0 + (radius - o.distance) / options.spacing, 0.0, 1.0));
+        };
+        const float difference = ground[neighbour(o)] - ground[here];
+        lowest = std::min(lowest, weight(recess_radius) * difference);
+        highest = std::max(highest, weight(advance_radius) * difference);
       }
       recess[here] = -lowest;
       advance[here] = highest;
@@ -271,7 +284,7 @@ RockZone make_rock_zone(const Heightfield& heightfield, const RockZoneOptions& o
     task.advance();
   }, task);
   const bool empty = std::ranges::none_of(steep, [](char s) { return s != 0; });
-  return {raster.layer(recess), raster.layer(advance), raster.layer(nearby), empty};
+  return {raster.layer(recess), raster.layer(advance), raster.layer(nearby), options.slope, empty};
 }
 
 FieldPtr displaced_terrain(FieldPtr terrain, Heightfield layer, double factor) {

@@ -1,6 +1,8 @@
 /// Where rock may replace the ground, and how far: the two envelopes of a heightfield.
 #pragma once
 
+#include <functional>
+
 #include "outcrop/core/task.h"
 #include "outcrop/implicit/field.h"
 #include "outcrop/terrain/heightfield.h"
@@ -10,7 +12,9 @@ namespace outcrop {
 struct RockZoneOptions {
   Vec2 lo{0.0}, hi{0.0};  ///< Rectangle that is covered, map coordinates.
   double slope = 0.0;     ///< Radians; ground flatter than this is left alone.
-  double reach = 1.0;     ///< Horizontal distance by which the ground may withdraw or advance, metres, > 0.
+  double reach = 1.0;     ///< Largest horizontal distance by which the ground may advance, metres, > 0.
+  double recess = 1.0;    ///< It may withdraw by this many times the reach, ≥ 0.
+  std::function<double(const Vec3&)> reach_at;  ///< At a point of the surface, [0, reach]; 0: left alone. Null: `reach`.
   double spacing = 1.0;   ///< Of the raster, metres, > 0.
 };
 
@@ -23,6 +27,7 @@ struct RockZone {
   Heightfield recess;   ///< ≥ 0, metres, bilinear.
   Heightfield advance;  ///< ≥ 0, metres, bilinear.
   Heightfield nearby;   ///< > 0 where steep ground lies within reach.
+  double slope = 0.0;   ///< The threshold, radians.
   bool empty = true;    ///< No steep ground at all.
 };
 
@@ -34,7 +39,7 @@ struct RockZone {
 
 /// max(f − advance, min(f + recess, rock)): rock between the envelopes, the terrain's own bits where both are 0.
 ///
-/// Labels: rock's own where rock is the surface, `strata`'s label where the recessed base shows, `ground` elsewhere.
+/// Labels: rock's own where rock is the surface, else `strata`'s on ground steeper than the threshold, `ground` elsewhere.
 [[nodiscard]] FieldPtr rock_on_terrain(FieldPtr terrain, RockZone zone, FieldPtr rock, FieldPtr strata, Label ground);
 
 }  // namespace outcrop

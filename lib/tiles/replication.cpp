@@ -126,9 +126,11 @@ class PlacedBlocks final : public Field {
 
     std::array<Vec3, kChunk> tile_points;
     for (std::size_t i = 0; i < n; ++i) tile_points[i] = root_->to_tile(points[i]);
-    std::array<double, kChunk> growth{};
+    std::array<double, kChunk> growth;
     std::array<Vec3, kChunk> growth_gradients;
-    if (crack_floor_) {
+    if (!crack_floor_) {
+      std::fill_n(growth.begin(), n, 0.0);
+    } else {
       crack_floor_->values(points, {growth.data(), n}, wants_gradients ? std::span(growth_gradients).first(n) : std::span<Vec3>{});
       for (std::size_t i = 0; i < n; ++i) {
         const double raw = -o.closure_slope * growth[i];
