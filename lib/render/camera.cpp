@@ -32,10 +32,15 @@ Vec3 direction_of(double azimuth, double elevation) {
   return {std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth), std::sin(elevation)};
 }
 
-/// An estimate of the signed distance to the surface.
-double distance_at(const Field& field, const Vec3& p) {
-  const double slope = glm::length(field.gradient(p));
-  return field.value(p) / std::max(slope, 1e-6);
+/// Estimates of the signed distance to the surface.
+std::vector<double> distances_at(const Field& field, const std::vector<Vec3>& points) {
+  const std::size_t n = points.size();
+  std::vector<double> x(n), y(n), z(n), distances(n);
+  std::vector<Vec3> gradients(n);
+  for (std::size_t i = 0; i < n; ++i) x[i] = points[i].x, y[i] = points[i].y, z[i] = points[i].z;
+  field.values({x, y, z}, distances, gradients);
+  for (std::size_t i = 0; i < n; ++i) distances[i] /= std::max(glm::length(gradients[i]), 1e-6);
+  return distances;
 }
 
 /// Lattice points of the box within one lattice cell of the surface; all of them where there is no surface.
@@ -44,8 +49,9 @@ std::vector<Vec3> surface_points(const Field& field, const Box& box, double reac
   for (int k = 0; k < kFocusGrid; ++k)
     for (int j = 0; j < kFocusGrid; ++j)
       for (int i = 0; i < kFocusGrid; ++i) all.push_back(box.lo + (Vec3(i, j, k) + 0.5) / double(kFocusGrid) * box.size());
-  for (const Vec3& p : all)
-    if (std::abs(distance_at(field, p)) < reach) near.push_back(p);
+  const std::vector<double> distances = distances_at(field, all);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (std::abs(distances[i]) < reach) near.push_back(all[i]);
   return near.empty() ? all : near;
 }
 
@@ -124,21 +130,32 @@ Camera frame_box(const Box& focus, const Vec3& view_direction, double field_of_v
   return {centre - axes.forward * distance, centre, field_of_view};
 }
 
-Camera framed(const Field& field, const Box& focus, const Vec3& from_direction, double field_of_view, double aspect) {
+Camera framed(const Field& field, const Box& focus, const Vec3& from_direction, double field_of_view, double aspect,
+              const std::optional<Box>& drawn) {
   require_frame(focus, from_direction, field_of_view, aspect);
   const double diagonal = 2.0 * focus.half_diagonal();
-  const double reach = std::max(diagonal / kFocusGrid, 1e-3);
+  const double reach = std::max(diagonal / kFocusGrid, 1e-3), clearance = kClearance * diagonal;
   const std::vector<Vec3> points = surface_points(field, focus, reach);
 
   const std::vector<Candidate> candidates = candidates_around(from_direction);
-  const auto camera_of = [&](const Candidate& candidate) {
+  std::vector<Camera> cameras;
+  std::vector<Vec3> places;
+  Box region = focus;
+  for (const Candidate& candidate : candidates) {
     Camera camera = frame_box(focus, -direction_of(candidate.azimuth, candidate.elevation), field_of_view, aspect);
     camera.position = camera.target + (camera.position - camera.target) * candidate.distance;
-    return camera;
+    region.include(camera.position);
+    places.push_back(camera.position);
+    cameras.push_back(camera);
+  }
+  const auto in_air = [&](const Vec3& place, double distance) {
+    return distance >= clearance || (drawn && !drawn->grown(clearance).contains(place));
   };
-  Box region = focus;
-  for (const Candidate& candidate : candidates) region.include(camera_of(candidate).position);
-  const Tracer tracer(field, {.region = region.grown(reach),
+  const std::vector<double> distances = distances_at(field, places);
+  region = region.grown(reach);
+  const Box cut = drawn ? intersection(region, *drawn) : region;
+  const bool anything = cut.lo.x < cut.hi.x && cut.lo.y < cut.hi.y && cut.lo.z < cut.hi.z;
+  const Tracer tracer(field, {.region = anything ? cut : focus.grown(reach),
                               .detail = reach,
                               .leaf_details = 1.0,
                               .eye = focus.centre(),
@@ -148,18 +165,17 @@ Camera framed(const Field& field, const Box& focus, const Vec3& from_direction, 
 
   Camera best;
   double best_score = 0.0;
-  for (const Candidate& candidate : candidates) {
-    if (best_score >= 1.0 - candidate.penalty) break;  // Sorted by penalty: nothing better can follow.
-    const Camera camera = camera_of(candidate);
-    if (distance_at(field, camera.position) < kClearance * diagonal) continue;
-    const double score = visible_share(tracer, camera, aspect, points, reach) - candidate.penalty;
-    if (score > best_score) best = camera, best_score = score;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    if (best_score >= 1.0 - candidates[i].penalty) break;  // Sorted by penalty: nothing better can follow.
+    if (!in_air(places[i], distances[i])) continue;
+    const double score = visible_share(tracer, cameras[i], aspect, points, reach) - candidates[i].penalty;
+    if (score > best_score) best = cameras[i], best_score = score;
   }
   if (best_score > 0.0) return best;
 
   // Buried from everywhere: straight above, as high as it takes.
   Camera above = frame_box(focus, {0, 0, -1}, field_of_view, aspect);
-  for (int i = 0; i < 64 && distance_at(field, above.position) < kClearance * diagonal; ++i)
+  for (int i = 0; i < 64 && !in_air(above.position, distances_at(field, {above.position})[0]); ++i)
     above.position.z += diagonal * (1 + i);
   return above;
 }

@@ -79,16 +79,17 @@ Leaf leaf_of(const Box& grown, FieldPtr field) {
 /// Sorts one box into nodes, leaves or nothing.
 void place(const Box& box, const Field& parent, const TracerOptions& options, Split& split) {
   const Box grown = box.grown(kOverlap * longest_side(box));
-  if (parent.bound(grown).lo > 0.0) return;
-  FieldPtr field = parent.narrow(grown);
-  const Interval bound = field->bound(grown);
+  Interval bound = parent.bound(grown);
   if (bound.lo > 0.0) return;
-  const bool solid = bound.hi < 0.0;
-  if (solid && !touches_sides(box, options.region)) return;
-  if (solid || longest_side(box) <= wanted_size(box, options))
-    split.leaves.push_back(leaf_of(grown, std::move(field)));
-  else
+  const auto hidden = [&] { return bound.hi < 0.0 && !touches_sides(box, options.region); };
+  if (hidden()) return;
+  FieldPtr field = parent.narrow(grown);
+  if (bound.hi >= 0.0 && longest_side(box) > wanted_size(box, options)) {
     split.nodes.push_back({box, std::move(field)});
+    return;
+  }
+  bound = outcrop::intersection(bound, field->bound(grown));  // Often tighter for the narrowed field.
+  if (bound.lo <= 0.0 && !hidden()) split.leaves.push_back(leaf_of(grown, std::move(field)));
 }
 
 }  // namespace

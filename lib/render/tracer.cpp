@@ -25,9 +25,11 @@ constexpr int kStepCap = 256;           // Steps in one leaf before steps grow t
 constexpr double kSmallestStep = 0.25;  // Of the ray's width.
 constexpr double kRootWidth = 0.05;     // A hit is found to this share of the ray's width …
 constexpr double kRootDistance = 1e-4;  // … and to this share of its distance.
-constexpr int kRootSteps = 40;
+constexpr int kRootBatches = 12;
+constexpr int kBatch = 8;               // Values at a time.
+constexpr int kDepth = 24;              // Of stretches within stretches; each is an eighth of its parent at most.
+constexpr double kTiniest = 1e-9;       // Relative: where doubles end.
 constexpr double kLabelDepth = 0.5;     // Ray widths inside the rock at which its label is asked for.
-constexpr double kOverRelaxation = 1.5;
 constexpr double kFloatSlack = 4e-7;    // Relative: rounding of positions to floats, with room to spare.
 
 bool finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
@@ -56,78 +58,115 @@ Clip clip(const Box& box, const Ray& ray) noexcept {
   return result;
 }
 
-/// A bracket's air end after the field's sign has changed: the first rock is at t or within the tolerance behind it.
+/// Where a ray meets rock in a leaf: the first rock is at t or within the tolerance behind it.
 struct Crossing {
   double t = kInfinity;
   bool at_entry = false;  // Already in rock where the ray enters.
 };
 
+/// Searches one leaf along one ray.
+///
+/// Sphere tracing, several balls at a time: a value v at t proves the ray free for v / L on both sides of t (as the
+/// overlapping balls of Keinert et al. 2014, section 3.1), and a batch of values costs little more than one. Stretches
+/// that no ball covers are sampled again, until they are shorter than the smallest step.
 class March {
  public:
-  March(const Leaf& leaf, const Ray& ray) : leaf_(leaf), ray_(ray) {}
+  March(const Leaf& leaf, const Ray& ray, bool any) : leaf_(leaf), ray_(ray), scale_(1.0 / leaf.lipschitz), any_(any) {}
 
-  /// The first place in [begin, end] where f ≤ 0, if any comes before `best`.
-  Crossing first(double begin, double end, double best) noexcept {
-    const double scale = 1.0 / leaf_.lipschitz;
-    double t = begin, v = value(t);
-    if (v <= 0.0) return {begin, true};
-    double relaxation = kOverRelaxation;
-    while (t < end && t < best) {
-      const double width = ray_.width(t);
-      const double safe = v * scale;
-      const double least = steps_ > kStepCap ? width : kSmallestStep * width;
-      // Overlapping balls leave no gap even when the step is longer than the first one's radius
-      // (Keinert et al. 2014, section 3.1); where they turn out not to overlap, the step is taken back.
-      const bool relaxed = relaxation > 1.0 && safe * relaxation > least;
-      const double step = std::max({relaxed ? safe * relaxation : safe, least, kTiniest * std::max(t, 1.0)});
-      const double next = std::min(t + step, end);
-      const double next_v = value(next);
-      if (relaxed && (next_v <= 0.0 || safe + next_v * scale < next - t)) {
-        relaxation = 1.0;
-        continue;
-      }
-      if (next_v <= 0.0) return {root(t, v, next, next_v), false};
-      t = next;
-      v = next_v;
-    }
-    return {};
+  Crossing first(double begin, double end) noexcept {
+    Batch batch;
+    batch.count = points_for(begin, end);
+    for (int i = 0; i < batch.count; ++i) batch.t[i] = begin + (end - begin) * i / (batch.count - 1);
+    evaluate(batch);
+    if (batch.v[0] <= 0.0) return {begin, true};
+    air_ = free_ = begin;
+    return {scan(batch, end, 0), false};
   }
 
   [[nodiscard]] int steps() const noexcept { return steps_; }
   [[nodiscard]] bool capped() const noexcept { return steps_ > kStepCap; }
 
  private:
-  static constexpr double kTiniest = 1e-9;
+  struct Batch {
+    int count = 0;
+    double t[kBatch];
+    double v[kBatch];
+  };
 
-  double value(double t) noexcept {
-    ++steps_;
-    const double v = leaf_.field->value(ray_.at(t));
-    return std::isnan(v) ? 1.0 : v;
+  [[nodiscard]] double smallest_step(double t) const noexcept {
+    const double width = ray_.width(t);
+    return std::max(steps_ > kStepCap ? width : kSmallestStep * width, kTiniest * std::max(t, 1.0));
   }
 
-  /// Illinois: regula falsi that halves the value of an end that stays.
-  double root(double a, double fa, double b, double fb) noexcept {
-    const double tolerance = std::max(std::min(kRootWidth * ray_.width(b), kRootDistance * b), kTiniest * b);
-    double real_a = a;
-    for (int i = 0, side = 0; i < kRootSteps && b - a > tolerance; ++i) {
-      double t = a + (b - a) * std::clamp(fa / (fa - fb), 0.02, 0.98);
-      if (i % 4 == 3) t = 0.5 * (a + b);  // Keeps the bracket shrinking whatever the field does.
-      const double f = value(t);
-      if (f > 0.0) {
-        real_a = a = t, fa = f;
-        if (side == 1) fb *= 0.5;
-        side = 1;
-      } else {
-        b = t, fb = f;
-        if (side == -1) fa *= 0.5;
-        side = -1;
-      }
+  /// As many as make sense between a and b, at least 2.
+  [[nodiscard]] int points_for(double a, double b) const noexcept {
+    return 2 + static_cast<int>(std::min((b - a) / smallest_step(a), kBatch - 2.0));
+  }
+
+  void evaluate(Batch& batch) noexcept {
+    double x[kBatch], y[kBatch], z[kBatch];
+    const auto n = static_cast<std::size_t>(batch.count);
+    for (std::size_t i = 0; i < n; ++i) {
+      const Vec3 p = ray_.at(batch.t[i]);
+      x[i] = p.x, y[i] = p.y, z[i] = p.z;
     }
-    return real_a;
+    leaf_.field->values({{x, n}, {y, n}, {z, n}}, {batch.v, n}, {});
+    steps_ += batch.count;
+  }
+
+  /// Goes through a batch from the front; the first place with f ≤ 0 before `end`, or infinity once all of it is free.
+  double scan(const Batch& batch, double end, int depth) noexcept {
+    if (any_ && std::any_of(batch.v, batch.v + batch.count, [](double v) { return v <= 0.0; })) return batch.t[0];
+    for (int i = 0; i < batch.count; ++i) {
+      const double t = batch.t[i], v = batch.v[i];
+      if (t < air_) continue;
+      const double near = t - std::max(v, 0.0) * scale_;
+      if (const double found = close(near, depth); found < kInfinity) return found;
+      if (v <= 0.0) return any_ ? t : root(std::max(air_, std::min(free_, t)), t);
+      air_ = t;
+      free_ = std::max(free_, t + v * scale_);
+    }
+    return close(end, depth);
+  }
+
+  /// Looks into the stretch between what is known to be free and `until`, if it is long enough to matter.
+  double close(double until, int depth) noexcept {
+    if (until - free_ <= smallest_step(free_) || depth == kDepth) return kInfinity;
+    Batch batch;
+    const double begin = free_;
+    batch.count = points_for(begin, until) - 1;
+    for (int i = 0; i < batch.count; ++i) batch.t[i] = begin + (until - begin) * (i + 1) / (batch.count + 1);
+    evaluate(batch);
+    return scan(batch, until, depth + 1);
+  }
+
+  /// The air end of a bracket of the surface: a holds air, b rock.
+  double root(double a, double b) noexcept {
+    const double tolerance = std::max(std::min(kRootWidth * ray_.width(b), kRootDistance * b), kTiniest * b);
+    for (int i = 0; i < kRootBatches && b - a > tolerance; ++i) {
+      Batch batch;
+      batch.count = std::min(kBatch, static_cast<int>((b - a) / tolerance) + 1);
+      for (int k = 0; k < batch.count; ++k) batch.t[k] = a + (b - a) * (k + 1) / (batch.count + 1);
+      evaluate(batch);
+      const double left = a;
+      for (int k = 0; k < batch.count; ++k) {
+        if (batch.v[k] <= 0.0) {
+          b = batch.t[k];
+          break;
+        }
+        a = batch.t[k];
+      }
+      if (a == left && b - a <= kTiniest * b) break;
+    }
+    return a;
   }
 
   const Leaf& leaf_;
   const Ray& ray_;
+  double scale_;
+  bool any_;           // Any rock will do: nothing is refined.
+  double air_ = 0.0;   // The last place known by its value to be air.
+  double free_ = 0.0;  // All before it is free.
   int steps_ = 0;
 };
 
@@ -168,6 +207,7 @@ struct Query {
   double best = kInfinity;
   unsigned leaf = RTC_INVALID_GEOMETRY_ID;
   bool at_entry = false;
+  bool any = false;  // Whether, not where.
   RayCounters* counters = nullptr;
 };
 
@@ -176,8 +216,8 @@ Crossing search(const Leaf& leaf, Query& query) noexcept {
   Clip inside = clip(leaf.box, ray);
   inside.begin = std::max(inside.begin, query.region_begin);
   if (inside.empty() || inside.begin >= query.best) return {};
-  March march(leaf, ray);
-  const Crossing crossing = march.first(inside.begin, inside.end, query.best);
+  March march(leaf, ray, query.any);
+  const Crossing crossing = march.first(inside.begin, inside.end);
   query.counters->steps += static_cast<std::size_t>(march.steps());
   query.counters->capped += march.capped();
   return crossing;
@@ -318,7 +358,7 @@ bool Tracer::blocked(const Ray& ray, RayCounters& counters) const noexcept {
   const Clip inside = clip(impl_->options.region, ray);
   RTCRay embree;
   if (!impl_->embree_ray(ray, inside, embree)) return false;
-  Query query{.context = {}, .ray = &ray, .region_begin = inside.begin, .counters = &counters};
+  Query query{.context = {}, .ray = &ray, .region_begin = inside.begin, .any = true, .counters = &counters};
   rtcInitIntersectContext(&query.context);
   rtcOccluded1(impl_->scene, &query.context, &embree);
   return embree.tfar < 0.0f;

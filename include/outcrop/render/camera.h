@@ -1,6 +1,8 @@
 /// Pinhole cameras, and where to put them.
 #pragma once
 
+#include <optional>
+
 #include "outcrop/core/box.h"
 #include "outcrop/core/vec.h"
 #include "outcrop/implicit/field.h"
@@ -32,8 +34,10 @@ struct CameraAxes {
 /// Tries directions around it, farther to the sides and higher up, and nearer places when all of those are blocked (the
 /// other wall of a canyon), and takes the one from which most of the surface in the box is in the picture and not hidden by
 /// rock, small turns first. The camera is always in the air: in the worst case straight above.
+/// @param drawn  Rock outside of this box is not in the picture and hides nothing: pass the preview's region, which also
+///               saves looking at rock far away.
 /// @throws ParameterError as frame_box. Cost: a coarse Tracer, and at most 135 places with some 100 rays each.
 [[nodiscard]] Camera framed(const Field& field, const Box& focus, const Vec3& from_direction, double field_of_view,
-                            double aspect);
+                            double aspect, const std::optional<Box>& drawn = std::nullopt);
 
 }  // namespace outcrop
