@@ -25,8 +25,8 @@ constexpr int kFocusSamples = 192;            // Across the region, to find its 
 constexpr double kLeastBytesACell = 60.0;     // Two triangles and their share of vertices: below what meshing takes.
 
 // What one core does, measured on the canyon of the demo; for --dry-run only.
-constexpr double kTrianglesASecond = 350e3;
-constexpr double kPreviewPixelsASecond = 40e3;
+constexpr double kTrianglesASecond = 100e3;
+constexpr double kPreviewPixelsASecond = 2e3;
 
 /// A sensible line for files: what was made from what, without paths or thread counts, so that runs compare to the byte.
 std::vector<std::string> comments(const AmplifyReport& report, const Vec2& origin) {
