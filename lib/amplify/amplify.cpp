@@ -206,7 +206,7 @@ Amplified amplify(const Heightfield& heightfield, const StrataFile& strata_file,
                           {.lo = lo - margin, .hi = hi + margin, .slope = placement.slope, .reach = reach,
                            .recess = placement.recess,
                            .reach_at = [&](const Vec3& p) { return rocks[strata.material(p)].reach; },
-                           .spacing = spacing},
+                           .spacing = spacing, .block_size = reach / kReachInBlocks},
                           task);
 
   FieldPtr field = labelled(filled, ground);

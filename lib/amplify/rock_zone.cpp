@@ -14,6 +14,10 @@ namespace {
 
 constexpr std::size_t kChunk = 256;
 constexpr double kRecessGrowth = 4.0;   // Metres of recess radius a metre from the rim: the base hides behind blocks at once.
+constexpr double kLedge = 0.65;         // Block sizes; half the width of ledges that blocks may cover.
+constexpr double kSpot = 0.3;           // Block sizes; half the width of steep spots that stay ground.
+constexpr double kSteepestFoot = 4.0;   // Tangent of the slope by which the base goes on below the foot of a wall.
+constexpr double kBareSlope = 0.15;     // Radians beyond the threshold at which ground without blocks is bare rock.
 constexpr double kAdvanceGrowth = 0.75; // Of advance: blocks come out of the ground gradually.
 
 /// A raster of nodes over a rectangle, rows from the south.
@@ -24,6 +28,10 @@ struct Raster {
 
   [[nodiscard]] std::size_t index(int column, int row) const { return static_cast<std::size_t>(row) * width + column; }
   [[nodiscard]] Vec2 node(int column, int row) const { return lo + spacing * Vec2(column, row); }
+  /// The index of a neighbour; beyond the border, of the nearest node.
+  [[nodiscard]] std::size_t neighbour(int column, int row, int dx, int dy) const {
+    return index(std::clamp(column + dx, 0, width - 1), std::clamp(row + dy, 0, height - 1));
+  }
 
   [[nodiscard]] Heightfield layer(const std::vector<float>& nodes) const {
     ElevationGrid grid{.width = width, .height = height, .cell_x = spacing, .cell_y = spacing, .origin = lo};
@@ -51,6 +59,30 @@ std::vector<Offset> disc_offsets(double radius, double spacing) {
     }
   std::ranges::stable_sort(offsets, {}, &Offset::distance);
   return offsets;
+}
+
+/// Erodes (keep = true) or dilates (keep = false) a mask of steep nodes by the offsets: a node becomes `keep`'s opposite when
+/// any neighbour is. Beyond the raster its border goes on.
+std::vector<char> shifted(const Raster& raster, const std::vector<char>& mask, const std::vector<Offset>& offsets, bool keep) {
+  std::vector<char> result(mask.size());
+  parallel_for(static_cast<std::size_t>(raster.height), [&](std::size_t r) {
+    const int row = static_cast<int>(r);
+    for (int column = 0; column < raster.width; ++column)
+      result[raster.index(column, row)] =
+          keep == std::ranges::all_of(offsets, [&](const Offset& o) {
+            return (mask[raster.neighbour(column, row, o.dx, o.dy)] != 0) == keep;
+          });
+  });
+  return result;
+}
+
+/// The mask at the scale of blocks: ledges narrower than twice `ledge` count as wall, steep spots narrower than twice `spot`
+/// as ground. (Morphological closing, then opening.) Wide flats keep every node.
+std::vector<char> at_block_scale(const Raster& raster, std::vector<char> mask, double ledge, double spot) {
+  const std::vector<Offset> closing = disc_offsets(ledge - raster.spacing, raster.spacing);
+  const std::vector<Offset> opening = disc_offsets(spot - raster.spacing, raster.spacing);
+  mask = shifted(raster, shifted(raster, mask, closing, false), closing, true);
+  return shifted(raster, shifted(raster, mask, opening, true), opening, false);
 }
 
 Box flat_box(const Vec2& lo, const Vec2& hi) { return {Vec3(lo, 0.0), Vec3(hi, 0.0)}; }
@@ -93,7 +125,7 @@ class RockOnTerrain final : public Field {
   RockOnTerrain(FieldPtr terrain, RockZone zone, FieldPtr rock, FieldPtr strata, Label ground, bool has_base,
                 const Box& rectangle)
       : terrain_(std::move(terrain)), zone_(std::move(zone)), rock_(std::move(rock)), strata_(std::move(strata)),
-        ground_(ground), cos_slope_(std::cos(zone_.slope)), has_base_(has_base) {
+        ground_(ground), cos_slope_(std::cos(std::min(zone_.slope + kBareSlope, 0.5 * kPi))), has_base_(has_base) {
     const Vec2 lo(rectangle.lo), hi(rectangle.hi);
     lipschitz_ = terrain_->lipschitz() + std::max(zone_.recess.slope_bound(lo, hi), zone_.advance.slope_bound(lo, hi));
     if (rock_) lipschitz_ = std::max(lipschitz_, rock_->lipschitz());
@@ -244,15 +276,16 @@ RockZone make_rock_zone(const Heightfield& heightfield, const RockZoneOptions& o
     task.advance();
   }, task);
 
+  if (options.block_size > 0.0)
+    steep = at_block_scale(raster, std::move(steep), kLedge * options.block_size, kSpot * options.block_size);
+
   const double largest_radius = options.reach * std::max(1.0, options.recess);
   const std::vector<Offset> offsets = disc_offsets(largest_radius, options.spacing);
   std::vector<float> recess(count, 0.0f), advance(count, 0.0f), nearby(count, 0.0f);
   parallel_for(rows, [&](std::size_t r) {
     const int row = static_cast<int>(r);
     for (int column = 0; column < raster.width; ++column) {
-      const auto neighbour = [&](const Offset& o) {
-        return raster.index(std::clamp(column + o.dx, 0, raster.width - 1), std::clamp(row + o.dy, 0, raster.height - 1));
-      };
+      const auto neighbour = [&](const Offset& o) { return raster.neighbour(column, row, o.dx, o.dy); };
       const std::size_t here = raster.index(column, row);
       if (!steep[here]) {
         nearby[here] = std::ranges::any_of(offsets, [&](const Offset& o) { return steep[neighbour(o)]; }) ? 1.0f : 0.0f;
@@ -278,7 +311,11 @@ RockZone make_rock_zone(const Heightfield& heightfield, const RockZoneOptions& o
         lowest = std::min(lowest, weight(recess_radius) * difference);
         highest = std::max(highest, weight(advance_radius) * difference);
       }
-      recess[here] = -lowest;
+      // At the foot of a wall the lowest ground near by is the floor itself; blocks stand below it all the same.
+      const Vec2 p = raster.node(column, row);
+      const Heightfield::Sample s = heightfield.at(p.x, p.y);
+      const double slope = std::min(std::hypot(s.hx, s.hy), kSteepestFoot);
+      recess[here] = std::max(-lowest, static_cast<float>(slope * recess_radius));
       advance[here] = highest;
     }
     task.advance();

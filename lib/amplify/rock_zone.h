@@ -16,13 +16,15 @@ struct RockZoneOptions {
   double recess = 1.0;    ///< It may withdraw by this many times the reach, ≥ 0.
   std::function<double(const Vec3&)> reach_at;  ///< At a point of the surface, [0, reach]; 0: left alone. Null: `reach`.
   double spacing = 1.0;   ///< Of the raster, metres, > 0.
+  double block_size = 0.0;  ///< Metres; ledges narrower than this count as part of the wall. 0: none do.
 };
 
 /// On steep ground the surface may lie anywhere between h − recess and h + advance.
 ///
 /// Both envelopes are the lowest and the highest ground within a horizontal radius that grows from 0 at the rim of the
-/// steep ground to `reach`: on a wall they are the wall moved back and forth by that radius, at its top and foot they do
-/// not leave the levels of plateau and floor. Both are exactly 0 over ground that is not steep, and over nodata.
+/// steep ground to `reach`: on a wall they are the wall moved back and forth by that radius. At its top the advance does not
+/// leave the level of the plateau; at its foot the recess goes on below the floor, where blocks stand as well. Both are exactly 0 over nodata and over ground that is not steep, unless it is
+/// a ledge of the wall narrower than a block.
 struct RockZone {
   Heightfield recess;   ///< ≥ 0, metres, bilinear.
   Heightfield advance;  ///< ≥ 0, metres, bilinear.
@@ -39,7 +41,7 @@ struct RockZone {
 
 /// max(f − advance, min(f + recess, rock)): rock between the envelopes, the terrain's own bits where both are 0.
 ///
-/// Labels: rock's own where rock is the surface, else `strata`'s on ground steeper than the threshold, `ground` elsewhere.
+/// Labels: rock's own where rock is the surface, else `strata`'s on ground well steeper than the threshold, `ground` elsewhere.
 [[nodiscard]] FieldPtr rock_on_terrain(FieldPtr terrain, RockZone zone, FieldPtr rock, FieldPtr strata, Label ground);
 
 }  // namespace outcrop
