@@ -1,6 +1,6 @@
 #include "cli.h"
 
-#include <pthread.h>
+#include <semaphore.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -32,19 +32,37 @@ constexpr int kOurFault = 1;
 constexpr int kCallersFault = 2;
 constexpr int kInterrupted = 130;
 
-// Waits for SIGINT and SIGTERM on a thread of its own, since a signal handler may not touch a stop source.
+// Set by the handler, which may run on any thread: libraries start threads before main that block no signal.
+sem_t g_arrived;
+volatile std::sig_atomic_t g_signals = 0;
+
+extern "C" void note_signal(int signal) {
+  g_signals = g_signals + 1;
+  if (g_signals > 1) {  // the second time: at once
+    std::signal(signal, SIG_DFL);
+    std::raise(signal);
+  }
+  sem_post(&g_arrived);
+}
+
+// Turns SIGINT and SIGTERM into a stop request, on a thread of its own since a handler may not touch a stop source.
 class Interrupts {
  public:
   Interrupts() {
-    sigemptyset(&signals_);
-    sigaddset(&signals_, SIGINT);
-    sigaddset(&signals_, SIGTERM);
-    pthread_sigmask(SIG_BLOCK, &signals_, nullptr);  // inherited by every thread that starts later
+    sem_init(&g_arrived, 0, 0);
     watcher_ = std::thread([this] { watch(); });
+    struct sigaction action {};
+    action.sa_handler = note_signal;
+    action.sa_flags = SA_RESTART;
+    for (const int signal : {SIGINT, SIGTERM}) {
+      struct sigaction before {};
+      sigaction(signal, nullptr, &before);
+      if (before.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);  // nohup and shells' & ask to be spared
+    }
   }
   ~Interrupts() {
     finished_ = true;
-    pthread_kill(watcher_.native_handle(), SIGTERM);
+    sem_post(&g_arrived);
     watcher_.join();
   }
   Interrupts(const Interrupts&) = delete;
@@ -54,18 +72,10 @@ class Interrupts {
 
  private:
   void watch() {
-    for (;;) {
-      int signal = 0;
-      if (sigwait(&signals_, &signal) != 0) continue;
-      if (finished_) return;
-      if (source_.request_stop()) continue;
-      std::signal(signal, SIG_DFL);  // the second time: at once
-      pthread_sigmask(SIG_UNBLOCK, &signals_, nullptr);
-      std::raise(signal);
-    }
+    while (sem_wait(&g_arrived) != 0) continue;
+    if (!finished_) source_.request_stop();
   }
 
-  sigset_t signals_{};
   std::stop_source source_;
   std::atomic<bool> finished_ = false;
   std::thread watcher_;
