@@ -12,6 +12,9 @@ namespace {
 
 constexpr double kOverlap = 1e-6;        // Of a leaf's size: what neighbouring leaves share.
 constexpr double kOutOfViewScale = 3.0;  // Leaves that only shadows see are so much coarser.
+constexpr int kUnseenLevels = 3;
+constexpr int kSharedLevels = 1;         // Of boxes that share one narrowed field.
+constexpr std::size_t kSurfaceParts = 16;  // A surface crosses some 4 of a cube's 8 parts, and so on for kSharedLevels.
 constexpr double kCubeRatio = 0.7;       // Sides longer than this share of the longest are halved.
 
 struct Node {
@@ -76,44 +79,71 @@ Leaf leaf_of(const Box& grown, FieldPtr field) {
   return {grown, std::move(field), lipschitz};
 }
 
+/// The parts of a narrowed box that may hold surface, all with the same field: a bound of a small box is far tighter than
+/// what a Lipschitz constant says about it, and costs less memory than a field of its own.
+void refine(const Box& box, const FieldPtr& field, const TracerOptions& options, int levels, std::vector<Leaf>& leaves) {
+  const Box grown = box.grown(kOverlap * longest_side(box));
+  const Interval bound = field->bound(grown);
+  if (bound.lo > 0.0) return;
+  if (bound.hi < 0.0 && !touches_sides(box, options.region)) return;
+  if (levels == 0 || bound.hi < 0.0) {
+    leaves.push_back(leaf_of(grown, field));
+    return;
+  }
+  for (const Box& part : halves(box)) refine(part, field, options, levels - 1, leaves);
+}
+
 /// Sorts one box into nodes, leaves or nothing.
 void place(const Box& box, const Field& parent, const TracerOptions& options, Split& split) {
   const Box grown = box.grown(kOverlap * longest_side(box));
-  Interval bound = parent.bound(grown);
+  const Interval bound = parent.bound(grown);
   if (bound.lo > 0.0) return;
-  const auto hidden = [&] { return bound.hi < 0.0 && !touches_sides(box, options.region); };
-  if (hidden()) return;
+  if (bound.hi < 0.0 && !touches_sides(box, options.region)) return;
   FieldPtr field = parent.narrow(grown);
-  if (bound.hi >= 0.0 && longest_side(box) > wanted_size(box, options)) {
+  if (bound.hi >= 0.0 && longest_side(box) > wanted_size(box, options))
     split.nodes.push_back({box, std::move(field)});
-    return;
-  }
-  bound = outcrop::intersection(bound, field->bound(grown));  // Often tighter for the narrowed field.
-  if (bound.lo <= 0.0 && !hidden()) split.leaves.push_back(leaf_of(grown, std::move(field)));
+  else
+    refine(box, field, options, kSharedLevels, split.leaves);
 }
 
 }  // namespace
 
 std::vector<Leaf> build_leaves(const Field& field, const TracerOptions& options, const Task& task) {
-  Split level;
-  place(options.region, field, options, level);
-  std::vector<Leaf> leaves = std::move(level.leaves);
-  std::vector<Node> nodes = std::move(level.nodes);
+  std::vector<Leaf> leaves;
+  std::vector<Node> nodes{{options.region, field.shared_from_this()}};
+  // The first levels are split unseen: their boxes hold surface nearly always, and a bound over all blocks is dear.
+  for (int level = 1; level < kUnseenLevels; ++level) {
+    std::vector<Node> finer;
+    for (Node& node : nodes) {
+      if (longest_side(node.box) <= wanted_size(node.box, options)) {
+        finer.push_back(std::move(node));
+        continue;
+      }
+      for (const Box& part : halves(node.box)) finer.push_back({part, node.field});
+    }
+    nodes = std::move(finer);
+  }
   while (!nodes.empty()) {
     task.check();
-    // A surface that crosses a cube crosses about four of its eight parts.
-    if (leaves.size() + 4 * nodes.size() > options.max_leaves) {
-      for (Node& node : nodes) {
-        const Box grown = node.box.grown(kOverlap * longest_side(node.box));
-        leaves.push_back(leaf_of(grown, std::move(node.field)));
-      }
+    if (leaves.size() + kSurfaceParts * nodes.size() > options.max_leaves) {
+      const std::vector<std::vector<Leaf>> rest = parallel_map(
+          nodes.size(),
+          [&](std::size_t i) {
+            std::vector<Leaf> parts;
+            refine(nodes[i].box, nodes[i].field, options, kSharedLevels, parts);
+            return parts;
+          },
+          Task{.stop = task.stop});
+      for (const std::vector<Leaf>& parts : rest) leaves.insert(leaves.end(), parts.begin(), parts.end());
       break;
     }
     std::vector<Split> splits = parallel_map(
         nodes.size(),
         [&](std::size_t i) {
           Split split;
-          for (const Box& part : halves(nodes[i].box)) place(part, *nodes[i].field, options, split);
+          const bool small = longest_side(nodes[i].box) <= wanted_size(nodes[i].box, options);
+          for (const Box& part : small ? std::vector<Box>{nodes[i].box} : halves(nodes[i].box))
+            place(part, *nodes[i].field, options, split);
           return split;
         },
         Task{.stop = task.stop});

@@ -23,7 +23,7 @@ constexpr int kTile = 16;                  // Pixels a side of what one thread d
 constexpr int kLargestImage = 16384;       // Pixels a side.
 constexpr double kLift = 0.5;              // Pixel widths that secondary rays start above the surface.
 constexpr double kShadowSpread = 1e-3;     // The sun's disc is 9e-3 wide: finer things cast no shadow.
-constexpr double kAmbientSpread = 0.03;    // Sky rays stand for wide cones.
+constexpr double kAmbientSpread = 0.1;    // Sky rays stand for wide cones.
 constexpr double kAmbientReach = 0.3;      // Of the region's diagonal: rock farther away is taken for sky.
 const Vec3f kNoColour{0.42f, 0.40f, 0.37f};  // Of labels without a colour.
 const Vec3f kCutColour{0.27f, 0.23f, 0.19f};

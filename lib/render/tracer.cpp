@@ -22,8 +22,8 @@ using render::Leaf;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kStepCap = 256;           // Steps in one leaf before steps grow to the ray's width.
-constexpr double kSmallestStep = 0.25;  // Of the ray's width.
-constexpr double kRootWidth = 0.05;     // A hit is found to this share of the ray's width …
+constexpr double kSmallestStep = 0.5;  // Of the ray's width.
+constexpr double kRootWidth = 0.06;     // A hit is found to this share of the ray's width …
 constexpr double kRootDistance = 1e-4;  // … and to this share of its distance.
 constexpr int kRootBatches = 12;
 constexpr int kBatch = 8;               // Values at a time.
