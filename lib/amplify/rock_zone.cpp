@@ -119,16 +119,27 @@ class DisplacedTerrain final : public Field {
   double lipschitz_ = 1.0;
 };
 
-/// See rock_on_terrain. A null rock is one that cannot be the surface here; `has_base_` is false where the base cannot.
+/// Which of the three surfaces can be the field's somewhere in a box.
+struct Contenders {
+  bool clip = true, base = true, rock = true;
+};
+
+/// See rock_on_terrain. What is no contender is neither evaluated nor counted in the Lipschitz constant.
 class RockOnTerrain final : public Field {
  public:
-  RockOnTerrain(FieldPtr terrain, RockZone zone, FieldPtr rock, FieldPtr strata, Label ground, bool has_base,
+  RockOnTerrain(FieldPtr terrain, RockZone zone, FieldPtr rock, FieldPtr strata, Label ground, Contenders contenders,
                 const Box& rectangle)
-      : terrain_(std::move(terrain)), zone_(std::move(zone)), rock_(std::move(rock)), strata_(std::move(strata)),
-        ground_(ground), cos_slope_(std::cos(std::min(zone_.slope + kBareSlope, 0.5 * kPi))), has_base_(has_base) {
+      : terrain_(std::move(terrain)),
+        zone_(std::move(zone)),
+        rock_(std::move(rock)),
+        strata_(std::move(strata)),
+        ground_(ground),
+        cos_slope_(std::cos(std::min(zone_.slope + kBareSlope, 0.5 * kPi))),
+        can_(contenders) {
     const Vec2 lo(rectangle.lo), hi(rectangle.hi);
-    lipschitz_ = terrain_->lipschitz() + std::max(zone_.recess.slope_bound(lo, hi), zone_.advance.slope_bound(lo, hi));
-    if (rock_) lipschitz_ = std::max(lipschitz_, rock_->lipschitz());
+    if (can_.base) lipschitz_ = terrain_->lipschitz() + zone_.recess.slope_bound(lo, hi);
+    if (can_.clip) lipschitz_ = std::max(lipschitz_, terrain_->lipschitz() + zone_.advance.slope_bound(lo, hi));
+    if (can_.rock) lipschitz_ = std::max(lipschitz_, rock_->lipschitz());
   }
 
   void values(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept override {
@@ -146,11 +157,14 @@ class RockOnTerrain final : public Field {
   [[nodiscard]] FieldPtr narrow(const Box& box) const override {
     const Parts p = parts(box);
     if (p.outside) return terrain_->narrow(box);
-    // min and max return one of their arguments: a child that loses everywhere in the box is dropped to the bit.
-    const bool rock_loses = !rock_ || (has_base_ && p.rock.lo > p.base.hi);
-    const bool base_loses = !has_base_ || (rock_ && p.base.lo > p.rock.hi);
-    return std::make_shared<RockOnTerrain>(terrain_->narrow(box), zone_, rock_loses ? nullptr : rock_->narrow(box), strata_,
-                                           ground_, !base_loses, box);
+    // min and max return one of their arguments: a contender that loses everywhere in the box is dropped to the bit.
+    Contenders can = can_;
+    can.rock = can_.rock && !(can_.base && p.rock.lo > p.base.hi);
+    can.base = can_.base && !(can.rock && p.base.lo > p.rock.hi);
+    can.clip = can_.clip && !(p.clip.hi < p.inner.lo);
+    if (!can.base && !can.clip) return rock_->narrow(box);
+    return std::make_shared<RockOnTerrain>(terrain_->narrow(box), zone_, can.rock ? rock_->narrow(box) : nullptr, strata_,
+                                           ground_, can, box);
   }
 
   void labels(const Points& points, std::span<Label> labels) const noexcept override {
@@ -159,7 +173,7 @@ class RockOnTerrain final : public Field {
       const Vec3 p = points[i];
       const double recess = zone_.recess.at(p.x, p.y).h;
       const bool outside = recess <= 0.0 && zone_.advance.at(p.x, p.y).h <= 0.0;
-      if (!outside && rock_ && (!has_base_ || rock_->value(p) <= terrain_->value(p) + recess)) {
+      if (!outside && can_.rock && (!can_.base || rock_->value(p) < terrain_->value(p) + recess)) {
         rock_->labels(points.subspan(i, 1), labels.subspan(i, 1));
       } else {
         const Vec3 up = terrain_->gradient(p);
@@ -171,7 +185,7 @@ class RockOnTerrain final : public Field {
  private:
   struct Parts {
     bool outside;  ///< Both envelopes are 0 in the box.
-    Interval base, rock, whole;
+    Interval clip, base, rock, inner, whole;
   };
 
   [[nodiscard]] Parts parts(const Box& box) const noexcept {
@@ -179,23 +193,22 @@ class RockOnTerrain final : public Field {
     const Interval recess = zone_.recess.height_bound(lo, hi);
     const Interval advance = zone_.advance.height_bound(lo, hi);
     const Interval f = terrain_->bound(box);
-    Parts p{.outside = recess.hi <= 0.0 && advance.hi <= 0.0, .base = f, .rock = f, .whole = f};
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    Parts p{.outside = recess.hi <= 0.0 && advance.hi <= 0.0,
+            .clip = {f.lo - advance.hi, f.hi - std::max(advance.lo, 0.0)},
+            .base = {f.lo + std::max(recess.lo, 0.0), f.hi + recess.hi},
+            .rock = {-kInfinity, kInfinity},
+            .inner = {-kInfinity, kInfinity},
+            .whole = f};
     if (p.outside) return p;
-    p.base = {f.lo + std::max(recess.lo, 0.0), f.hi + recess.hi};
-    const Interval clip{f.lo - advance.hi, f.hi - std::max(advance.lo, 0.0)};
-    if (!rock_) {
-      p.whole = outcrop::max(clip, p.base);
-      return p;
-    }
     // Where all of the box is air above the clip or rock below the base, the blocks need not be asked.
-    if (has_base_ && (clip.lo > 0.0 || p.base.hi < 0.0)) {
-      constexpr double kInfinity = std::numeric_limits<double>::infinity();
-      p.rock = {-kInfinity, kInfinity};
-      p.whole = {clip.lo, std::max(clip.hi, p.base.hi)};
-      return p;
+    if (can_.rock && can_.base && (p.clip.lo > 0.0 || p.base.hi < 0.0)) {
+      p.whole = {can_.clip ? p.clip.lo : -kInfinity, std::max(p.clip.hi, p.base.hi)};
+      if (std::isfinite(p.whole.lo)) return p;
     }
-    p.rock = rock_->bound(box);
-    p.whole = outcrop::max(clip, has_base_ ? outcrop::min(p.base, p.rock) : p.rock);
+    if (can_.rock) p.rock = rock_->bound(box);
+    p.inner = !can_.rock ? p.base : !can_.base ? p.rock : outcrop::min(p.base, p.rock);
+    p.whole = can_.clip ? outcrop::max(p.clip, p.inner) : p.inner;
     return p;
   }
 
@@ -213,16 +226,17 @@ class RockOnTerrain final : public Field {
     if (!any) return;
     std::array<double, kChunk> rock;
     std::array<Vec3, kChunk> rock_gradients;
-    if (rock_)
+    if (can_.rock)
       rock_->values(points, {rock.data(), n}, wants_gradients ? std::span(rock_gradients).first(n) : std::span<Vec3>{});
     for (std::size_t i = 0; i < n; ++i) {
       const double f = values[i];
-      const bool rock_wins = rock_ && (!has_base_ || rock[i] < f + recess[i].h);
+      const bool rock_wins = can_.rock && (!can_.base || rock[i] < f + recess[i].h);
       const double inner = rock_wins ? rock[i] : f + recess[i].h;
       const double clip = f - advance[i].h;
-      values[i] = std::max(clip, inner);
+      const bool clip_wins = can_.clip && clip > inner;
+      values[i] = clip_wins ? clip : inner;
       if (!wants_gradients) continue;
-      if (clip > inner)
+      if (clip_wins)
         gradients[i] -= Vec3(advance[i].hx, advance[i].hy, 0.0);
       else if (rock_wins)
         gradients[i] = rock_gradients[i];
@@ -236,7 +250,7 @@ class RockOnTerrain final : public Field {
   FieldPtr rock_, strata_;
   Label ground_;
   double cos_slope_;
-  bool has_base_;
+  Contenders can_;
   double lipschitz_ = 1.0;
 };
 
@@ -331,8 +345,8 @@ FieldPtr displaced_terrain(FieldPtr terrain, Heightfield layer, double factor) {
 
 FieldPtr rock_on_terrain(FieldPtr terrain, RockZone zone, FieldPtr rock, FieldPtr strata, Label ground) {
   const Box rectangle = flat_box(zone.recess.lo(), zone.recess.hi());
-  return std::make_shared<RockOnTerrain>(std::move(terrain), std::move(zone), std::move(rock), std::move(strata), ground, true,
-                                         rectangle);
+  return std::make_shared<RockOnTerrain>(std::move(terrain), std::move(zone), std::move(rock), std::move(strata), ground,
+                                         Contenders{.rock = rock != nullptr}, rectangle);
 }
 
 }  // namespace outcrop

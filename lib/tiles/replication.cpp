@@ -4,8 +4,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <tuple>
 #include <utility>
+
+#include <glm/vector_relational.hpp>
 
 #include "outcrop/core/error.h"
 #include "outcrop/core/parallel.h"
@@ -15,6 +16,7 @@ namespace {
 
 constexpr std::size_t kChunk = 256;      // Points handled at a time by narrowed nodes.
 constexpr std::size_t kWorthAList = 96;  // Boxes with more candidate blocks are not narrowed: their children will be.
+constexpr double kWorthAsking = 0.35;    // Tile sides; larger boxes hold too many blocks to look at each.
 constexpr double kFloatSlack = 2e-5;     // Metres; rounding of a block's float coordinates, some 10 m at 24 bits.
 
 int floor_div(int a, int b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
@@ -57,8 +59,9 @@ class PlacedBlocks final : public Field {
     Vec3 position;  ///< Of the block's centre, tile frame without wrapping.
   };
 
-  PlacedBlocks(std::shared_ptr<const Replication> root, FieldPtr crack_floor, std::vector<Item> items)
-      : root_(std::move(root)), crack_floor_(std::move(crack_floor)), items_(std::move(items)) {
+  /// @param growth  Of all blocks, where there is no crack floor to ask.
+  PlacedBlocks(std::shared_ptr<const Replication> root, FieldPtr crack_floor, double growth, std::vector<Item> items)
+      : root_(std::move(root)), crack_floor_(std::move(crack_floor)), growth_(growth), items_(std::move(items)) {
     for (const Item& item : items_) lipschitz_ = std::max(lipschitz_, item.kernel.lipschitz());
     if (crack_floor_ && !items_.empty()) lipschitz_ += root_->options_.closure_slope * crack_floor_->lipschitz();
   }
@@ -96,15 +99,16 @@ class PlacedBlocks final : public Field {
     for (std::size_t i = 0; i < items_.size(); ++i)
       if (bounds[i].lo <= smallest)
         kept.push_back({items_[i].kernel.narrow(relative(tile_box, items_[i].position)), items_[i].position});
-    FieldPtr floor = crack_floor_ && !kept.empty() ? crack_floor_->narrow(box) : nullptr;
-    return std::make_shared<PlacedBlocks>(root_, std::move(floor), std::move(kept));
+    // Above the floor nothing grows, far below everything does by `closure`: then nobody asks the floor.
+    const bool asks = crack_floor_ && !kept.empty() && growth.lo < growth.hi;
+    return std::make_shared<PlacedBlocks>(root_, asks ? crack_floor_->narrow(box) : nullptr, growth.lo, std::move(kept));
   }
 
   void labels(const Points& points, std::span<Label> labels) const noexcept override { root_->labels(points, labels); }
 
  private:
   [[nodiscard]] Interval growth_bound(const Box& box) const noexcept {
-    if (!crack_floor_) return {0.0, 0.0};
+    if (!crack_floor_) return {growth_, growth_};
     const Interval floor = crack_floor_->bound(box);
     const ReplicationOptions& o = root_->options_;
     return {std::clamp(-o.closure_slope * floor.hi, 0.0, o.closure), std::clamp(-o.closure_slope * floor.lo, 0.0, o.closure)};
@@ -129,7 +133,7 @@ class PlacedBlocks final : public Field {
     std::array<double, kChunk> growth;
     std::array<Vec3, kChunk> growth_gradients;
     if (!crack_floor_) {
-      std::fill_n(growth.begin(), n, 0.0);
+      std::fill_n(growth.begin(), n, growth_);
     } else {
       crack_floor_->values(points, {growth.data(), n}, wants_gradients ? std::span(growth_gradients).first(n) : std::span<Vec3>{});
       for (std::size_t i = 0; i < n; ++i) {
@@ -161,6 +165,7 @@ class PlacedBlocks final : public Field {
 
   std::shared_ptr<const Replication> root_;
   FieldPtr crack_floor_;
+  double growth_;
   std::vector<Item> items_;
   double lipschitz_ = 1.0;
 };
@@ -188,6 +193,7 @@ Replication::Replication(Rock rock, FieldPtr terrain, ReplicationOptions options
                        .inradius = block.inradius});
   }
   // A block is 1-Lipschitz before its warp, which only adds: no value lies deeper than half of its smallest extent.
+  for (const Shape& shape : shapes_) supports_ = hull(supports_, shape.support);
   for (const Block& block : rock_.tile.blocks) {
     const Vec3 size = block.bounds.size();
     deepest_ = std::max(deepest_, 0.5 * std::min({size.x, size.y, size.z}));
@@ -314,13 +320,25 @@ template <class Visit>
 void Replication::visit_blocks(const Box& tile_box, Visit&& visit) const {
   const double side = rock_.tile.side;
   const double voxel = side / voxels_;
+  // Owners of blocks whose supports can reach the box, with their masks looked up once.
+  const IVec3 owner_lo(glm::floor((tile_box.lo - supports_.hi) / side));
+  const IVec3 owner_hi(glm::floor((tile_box.hi - supports_.lo) / side));
+  const IVec3 count = owner_hi - owner_lo + 1;
+  const std::size_t owners = static_cast<std::size_t>(count.x) * count.y * count.z;
+  const std::size_t words = (shapes_.size() + 63) / 64;
+  std::vector<const std::vector<std::uint64_t>*> masks(owners, nullptr);
+  bool any = false;
+  for (std::size_t i = 0; i < owners; ++i) {
+    const int n = static_cast<int>(i);
+    const IVec3 owner = owner_lo + IVec3(n % count.x, n / count.x % count.y, n / (count.x * count.y));
+    const auto found = present_.find(cell_key(owner));
+    if (found != present_.end()) masks[i] = &found->second, any = true;
+  }
+  if (!any) return;
+
+  std::vector<std::uint64_t> candidates(owners * words, 0);
   const IVec3 lo(glm::floor(tile_box.lo / voxel));
   const IVec3 hi(glm::floor(tile_box.hi / voxel));
-  struct Seen {
-    IVec3 owner;
-    std::uint32_t block;
-  };
-  std::vector<Seen> seen;
   for (int z = lo.z; z <= hi.z; ++z)
     for (int y = lo.y; y <= hi.y; ++y)
       for (int x = lo.x; x <= hi.x; ++x) {
@@ -329,19 +347,23 @@ void Replication::visit_blocks(const Box& tile_box, Visit&& visit) const {
         const std::size_t index = (static_cast<std::size_t>(v.z) * voxels_ + v.y) * voxels_ + v.x;
         for (std::uint32_t e = first_[index]; e < first_[index + 1]; ++e) {
           const Entry& entry = entries_[e];
-          const IVec3 owner = cell + IVec3(entry.dx, entry.dy, entry.dz);
-          if (!block_present(owner, entry.block)) continue;
-          const Shape& shape = shapes_[entry.block];
-          if (!shape.support.moved(Vec3(owner) * side + shape.centre).overlaps(tile_box)) continue;
-          seen.push_back({owner, entry.block});
+          const IVec3 owner = cell + IVec3(entry.dx, entry.dy, entry.dz) - owner_lo;
+          if (glm::any(glm::lessThan(owner, IVec3(0))) || glm::any(glm::greaterThanEqual(owner, count))) continue;
+          const std::size_t o = (static_cast<std::size_t>(owner.z) * count.y + owner.y) * count.x + owner.x;
+          candidates[o * words + entry.block / 64] |= 1ull << (entry.block % 64);
         }
       }
-  const auto order = [](const Seen& a, const Seen& b) {
-    return std::tie(a.owner.z, a.owner.y, a.owner.x, a.block) < std::tie(b.owner.z, b.owner.y, b.owner.x, b.block);
-  };
-  std::ranges::sort(seen, order);
-  for (std::size_t i = 0; i < seen.size(); ++i)
-    if (i == 0 || order(seen[i - 1], seen[i])) visit(seen[i].block, Vec3(seen[i].owner) * side + shapes_[seen[i].block].centre);
+  for (std::size_t o = 0; o < owners; ++o) {
+    if (!masks[o]) continue;
+    const int n = static_cast<int>(o);
+    const Vec3 corner = Vec3(owner_lo + IVec3(n % count.x, n / count.x % count.y, n / (count.x * count.y))) * side;
+    for (std::size_t w = 0; w < words; ++w)
+      for (std::uint64_t bits = candidates[o * words + w] & (*masks[o])[w]; bits != 0; bits &= bits - 1) {
+        const auto block = static_cast<std::uint32_t>(64 * w + static_cast<std::size_t>(__builtin_ctzll(bits)));
+        const Vec3 position = corner + shapes_[block].centre;
+        if (shapes_[block].support.moved(position).overlaps(tile_box)) visit(block, position);
+      }
+  }
 }
 
 void Replication::values(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept {
@@ -404,7 +426,7 @@ Interval Replication::block_bound(const Shape& shape, const Vec3& position, cons
 Interval Replication::bound(const Box& box) const noexcept {
   const Box tile_box = to_tile(box);
   Interval result{options_.cap, options_.cap};
-  if (tile_box.half_diagonal() > rock_.tile.side) return {-deepest_, options_.cap};
+  if (tile_box.half_diagonal() > kWorthAsking * rock_.tile.side) return {-deepest_, options_.cap};
   const Interval growth = growth_bound(box);
   visit_blocks(tile_box, [&](std::uint32_t block, const Vec3& position) {
     result = outcrop::min(result, block_bound(shapes_[block], position, tile_box, growth));
@@ -414,12 +436,12 @@ Interval Replication::bound(const Box& box) const noexcept {
 
 FieldPtr Replication::narrow(const Box& box) const {
   const Box tile_box = to_tile(box);
-  if (tile_box.half_diagonal() > rock_.tile.side) return shared_from_this();
+  if (tile_box.half_diagonal() > kWorthAsking * rock_.tile.side) return shared_from_this();
   std::vector<PlacedBlocks::Item> items;
   visit_blocks(tile_box, [&](std::uint32_t block, const Vec3& position) { items.push_back({shapes_[block].kernel, position}); });
   if (items.size() > kWorthAList) return shared_from_this();
   const auto root = std::static_pointer_cast<const Replication>(shared_from_this());
-  return std::make_shared<PlacedBlocks>(root, options_.crack_floor, std::move(items))->narrow(box);
+  return std::make_shared<PlacedBlocks>(root, options_.crack_floor, 0.0, std::move(items))->narrow(box);
 }
 
 void Replication::labels(const Points&, std::span<Label> labels) const noexcept {

@@ -99,6 +99,7 @@ class Replication final : public Field {
   std::vector<Entry> entries_;
   std::unordered_map<std::uint64_t, std::vector<std::uint64_t>> present_;  ///< Cell → one bit a block.
   std::size_t block_count_ = 0;
+  Box supports_;          ///< Around all supports, relative to their centres.
   double lipschitz_ = 1.0;
   double deepest_ = 0.0;  ///< No value is below − deepest_.
 };
