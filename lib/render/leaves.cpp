@@ -111,7 +111,7 @@ void place(const Box& box, const Field& parent, const TracerOptions& options, Sp
 std::vector<Leaf> build_leaves(const Field& field, const TracerOptions& options, const Task& task) {
   std::vector<Leaf> leaves;
   std::vector<Node> nodes{{options.region, field.shared_from_this()}};
-  // The first levels are split unseen: their boxes hold surface nearly always, and a bound over all blocks is dear.
+  // The first levels are split unseen: most boxes hold surface, and bounds over many blocks are dear.
   for (int level = 1; level < kUnseenLevels; ++level) {
     std::vector<Node> finer;
     for (Node& node : nodes) {

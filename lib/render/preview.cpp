@@ -23,7 +23,8 @@ constexpr int kTile = 16;                  // Pixels a side of what one thread d
 constexpr int kLargestImage = 16384;       // Pixels a side.
 constexpr double kLift = 0.5;              // Pixel widths that secondary rays start above the surface.
 constexpr double kShadowSpread = 1e-3;     // The sun's disc is 9e-3 wide: finer things cast no shadow.
-constexpr double kAmbientSpread = 0.1;    // Sky rays stand for wide cones.
+constexpr double kAmbientWidth = 2.0;      // Pixel widths of a sky ray where it starts.
+constexpr double kAmbientSpread = 0.2;     // Sky rays stand for wide cones.
 constexpr double kAmbientReach = 0.3;      // Of the region's diagonal: rock farther away is taken for sky.
 const Vec3f kNoColour{0.42f, 0.40f, 0.37f};  // Of labels without a colour.
 const Vec3f kCutColour{0.27f, 0.23f, 0.19f};
@@ -63,7 +64,7 @@ Vec3f sunlight(const View& view, const RayHit& hit, double width, RayCounters& c
   if (cosine <= 0.0) return Vec3f(0.0f);
   const Ray shadow{.origin = hit.position + kLift * width * hit.normal,
                    .direction = view.sun,
-                   .base_width = kLift * width,
+                   .base_width = width,
                    .spread = kShadowSpread};
   if (view.tracer.blocked(shadow, counters)) return Vec3f(0.0f);
   return static_cast<float>(cosine) * render::sun_on_white();
@@ -79,7 +80,7 @@ Vec3f skylight(const View& view, const RayHit& hit, double width, int k, const V
     const Ray ray{.origin = hit.position + kLift * width * hit.normal,
                   .direction = render::cosine_direction(hit.normal, k + i * samples, count * samples, shift),
                   .t_max = view.ambient_reach,
-                  .base_width = kLift * width,
+                  .base_width = kAmbientWidth * width,
                   .spread = kAmbientSpread};
     sum += view.tracer.blocked(ray, counters) ? render::rock_radiance(view.sun)
                                               : render::sky_radiance(ray.direction, view.sun);

@@ -92,7 +92,7 @@ TEST(Tracer, GivesTheSameHitForAnySizeOfLeaf) {
   const TracerOptions coarse{.region = region, .detail = 10.0, .eye = {0, -12, 0}};
   const TracerOptions fine{.region = region, .detail = 0.02, .leaf_widths = 1.0, .eye = {0, -12, 0}};
   const Tracer few(*pile, coarse), many(*pile, fine);
-  ASSERT_EQ(few.leaf_count(), 1u);
+  ASSERT_LE(few.leaf_count(), 8u);
   ASSERT_GT(many.leaf_count(), 5'000u);
   RayCounters counters;
   int different = 0;

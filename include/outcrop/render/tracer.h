@@ -43,14 +43,14 @@ struct RayCounters {
 
 struct TracerOptions {
   Box region;                ///< The field is cut off at its sides.
-  double detail = 0.25;      ///< Metres, > 0: leaves shrink to `leaf_details` of these.
+  double detail = 0.25;      ///< Metres, > 0: fields are narrowed to boxes of `leaf_details` of these, leaves are half as large.
   double leaf_details = 2.0;
   double leaf_widths = 12.0; ///< … but not below this many ray widths, as seen from `eye`.
   Vec3 eye{0.0};
   double spread = 1e-3;      ///< Of the rays that leave the eye.
   Vec3 view{0, 1, 0};        ///< Unit; leaves outside the cone around it are coarser.
   double view_angle = 0.5;   ///< Half the cone's angle, radians.
-  std::size_t max_leaves = 1'200'000;  ///< Reached: the remaining leaves stay as large as they are.
+  std::size_t max_leaves = 1'200'000;  ///< About: near it, leaves stay larger. Some 500 bytes each.
 };
 
 /// The field inside a region, ready for rays: an octree of boxes that `bound` could not exclude, each with its narrowed
