@@ -15,8 +15,8 @@ namespace outcrop {
 namespace {
 
 constexpr std::size_t kChunk = 256;      // Points handled at a time by narrowed nodes.
-constexpr std::size_t kWorthAList = 96;  // Boxes with more candidate blocks are not narrowed: their children will be.
-constexpr double kWorthAsking = 0.35;    // Tile sides; larger boxes hold too many blocks to look at each.
+constexpr std::size_t kWorthAList = 200; // Boxes with more candidate blocks are not narrowed: their children will be.
+constexpr double kWorthAsking = 300.0;   // Boxes that may touch more blocks than this are not looked at block by block.
 constexpr double kFloatSlack = 2e-5;     // Metres; rounding of a block's float coordinates, some 10 m at 24 bits.
 
 int floor_div(int a, int b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
@@ -410,6 +410,11 @@ void Replication::values(const Points& points, std::span<double> values, std::sp
 
 double Replication::lipschitz() const noexcept { return lipschitz_; }
 
+double Replication::blocks_about(const Box& tile_box) const noexcept {
+  const Vec3 reach = (tile_box.size() + 0.5 * supports_.size()) / rock_.tile.side;
+  return reach.x * reach.y * reach.z * static_cast<double>(shapes_.size());
+}
+
 Interval Replication::growth_bound(const Box& box) const noexcept {
   if (!options_.crack_floor) return {0.0, 0.0};
   const Interval floor = options_.crack_floor->bound(box);
@@ -426,7 +431,7 @@ Interval Replication::block_bound(const Shape& shape, const Vec3& position, cons
 Interval Replication::bound(const Box& box) const noexcept {
   const Box tile_box = to_tile(box);
   Interval result{options_.cap, options_.cap};
-  if (tile_box.half_diagonal() > kWorthAsking * rock_.tile.side) return {-deepest_, options_.cap};
+  if (blocks_about(tile_box) > kWorthAsking) return {-deepest_, options_.cap};
   const Interval growth = growth_bound(box);
   visit_blocks(tile_box, [&](std::uint32_t block, const Vec3& position) {
     result = outcrop::min(result, block_bound(shapes_[block], position, tile_box, growth));
@@ -436,7 +441,7 @@ Interval Replication::bound(const Box& box) const noexcept {
 
 FieldPtr Replication::narrow(const Box& box) const {
   const Box tile_box = to_tile(box);
-  if (tile_box.half_diagonal() > kWorthAsking * rock_.tile.side) return shared_from_this();
+  if (blocks_about(tile_box) > kWorthAsking) return shared_from_this();
   std::vector<PlacedBlocks::Item> items;
   visit_blocks(tile_box, [&](std::uint32_t block, const Vec3& position) { items.push_back({shapes_[block].kernel, position}); });
   if (items.size() > kWorthAList) return shared_from_this();

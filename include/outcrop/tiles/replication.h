@@ -86,6 +86,8 @@ class Replication final : public Field {
   /// Calls visit(block, owner cell) for each present block whose support may overlap the box, once each.
   template <class Visit>
   void visit_blocks(const Box& tile_box, Visit&& visit) const;
+  /// How many blocks may touch a box, were all present: an estimate from the tile's density.
+  [[nodiscard]] double blocks_about(const Box& tile_box) const noexcept;
   [[nodiscard]] Interval block_bound(const Shape& shape, const Vec3& position, const Box& tile_box,
                                      const Interval& growth) const noexcept;
   [[nodiscard]] Interval growth_bound(const Box& box) const noexcept;
