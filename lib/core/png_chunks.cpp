@@ -38,6 +38,23 @@ bool decides_pixels(std::string_view name) {
   return name == "IHDR" || name == "PLTE" || name == "tRNS" || name == "IDAT" || name == "IEND";
 }
 
+/// What libpng would refuse in an IHDR's 13 bytes, or "". PNG specification, third edition, section 11.2.1.
+std::string header_problem(std::string_view data) {
+  if (data.size() != 13) return "a header of " + std::to_string(data.size()) + " bytes";
+  const std::uint32_t width = big_endian(data), height = big_endian(data.substr(4));
+  constexpr std::uint32_t kLargest = 1'000'000;  // libpng's own limit.
+  if (width == 0 || height == 0 || width > kLargest || height > kLargest)
+    return std::to_string(width) + " x " + std::to_string(height) + " pixels";
+  const int depth = static_cast<unsigned char>(data[8]), colour = static_cast<unsigned char>(data[9]);
+  const bool grey = colour == 0, palette = colour == 3, rgb_or_alpha = colour == 2 || colour == 4 || colour == 6;
+  const bool low = depth == 1 || depth == 2 || depth == 4;
+  const bool fits = depth == 8 || (depth == 16 && !palette) || (low && !rgb_or_alpha);
+  if (!(grey || palette || rgb_or_alpha) || !fits)
+    return "colour type " + std::to_string(colour) + " with " + std::to_string(depth) + " bits";
+  if (data[10] != 0 || data[11] != 0 || static_cast<unsigned char>(data[12]) > 1) return "an unknown way of packing";
+  return {};
+}
+
 }  // namespace
 
 bool is_png(std::string_view bytes) noexcept { return bytes.starts_with(kSignature); }
@@ -59,6 +76,8 @@ Reduced reduced(std::string_view bytes) {
       if (checksum(whole.substr(4, length + 4)) != big_endian(whole.substr(length + 8))) {
         return {{}, "wrong checksum of " + chunk + place};
       }
+      if (name == "IHDR")
+        if (const std::string problem = header_problem(whole.substr(8, length)); !problem.empty()) return {{}, problem};
       result += whole;
     }
     if (name == "IEND") return {std::move(result), {}};
