@@ -1,4 +1,4 @@
-/// Rays per second against a pile of rounded blocks, and seconds to make a tracer; counter `items_per_second` counts rays.
+/// Rays per second against a pile of rounded blocks, and seconds to make a tracer; `items_per_second` are rays.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -73,7 +73,8 @@ void primary_rays(benchmark::State& state) {
   for (auto _ : state)
     for (int y = 0; y < kImage; ++y)
       for (int x = 0; x < kImage; ++x) {
-        const double right = (2.0 * (x + 0.5) / kImage - 1.0) * tan_half, up = (1.0 - 2.0 * (y + 0.5) / kImage) * tan_half;
+        const double right = (2.0 * (x + 0.5) / kImage - 1.0) * tan_half;
+        const double up = (1.0 - 2.0 * (y + 0.5) / kImage) * tan_half;
         const Ray ray{.origin = eye.position,
                       .direction = glm::normalize(axes.forward + right * axes.right + up * axes.up),
                       .spread = options.spread};
@@ -87,7 +88,8 @@ BENCHMARK(primary_rays)->ArgName("detail_cm")->Arg(5)->Arg(20)->Arg(80)->Unit(be
 /// The whole picture as programs make it, on all threads.
 void preview(benchmark::State& state) {
   const FieldPtr field = pile();
-  PreviewOptions options{.width = 640, .height = 360, .camera = camera(), .region = tracer_options(1.0).region, .detail = 0.1};
+  const PreviewOptions options{
+      .width = 640, .height = 360, .camera = camera(), .region = tracer_options(1.0).region, .detail = 0.1};
   std::size_t rays = 0;
   for (auto _ : state) rays += render_preview(*field, options).statistics.rays;
   state.SetItemsProcessed(static_cast<std::int64_t>(rays));

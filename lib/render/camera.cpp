@@ -10,7 +10,7 @@
 namespace outcrop {
 namespace {
 
-constexpr int kFocusGrid = 6;         // Lattice of points an axis over the focus, of which those near the surface count.
+constexpr int kFocusGrid = 6;         // Points an axis over the focus; those near the surface count.
 constexpr double kProbeWidth = 0.1;   // Width of the rays that look for rock, as a share of the lattice's cell.
 constexpr std::size_t kProbeLeaves = 30'000;
 constexpr double kTurnPenalty = 0.2;  // Share of the view that one radian of turning away must gain.
@@ -48,7 +48,8 @@ std::vector<Vec3> surface_points(const Field& field, const Box& box, double reac
   std::vector<Vec3> all, near;
   for (int k = 0; k < kFocusGrid; ++k)
     for (int j = 0; j < kFocusGrid; ++j)
-      for (int i = 0; i < kFocusGrid; ++i) all.push_back(box.lo + (Vec3(i, j, k) + 0.5) / double(kFocusGrid) * box.size());
+      for (int i = 0; i < kFocusGrid; ++i)
+        all.push_back(box.lo + (Vec3(i, j, k) + 0.5) / double(kFocusGrid) * box.size());
   const std::vector<double> distances = distances_at(field, all);
   for (std::size_t i = 0; i < all.size(); ++i)
     if (std::abs(distances[i]) < reach) near.push_back(all[i]);

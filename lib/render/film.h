@@ -29,8 +29,8 @@ struct Film {
   std::vector<Pixel> pixels;
 };
 
-/// The ambient light smoothed over neighbours on the same surface: those whose normal agrees and that lie in the pixel's
-/// tangent plane. Few rays a pixel are grainy; their mean over a patch of a plane is not.
+/// The ambient light smoothed over neighbours on the same surface: those whose normal agrees and that lie in the
+/// pixel's tangent plane. Few rays a pixel are grainy; their mean over a patch of a plane is not.
 [[nodiscard]] std::vector<Vec3f> smooth_ambient(const Film& film, const Task& task);
 
 /// Both pictures. Fills all but the statistics.

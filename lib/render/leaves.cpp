@@ -79,9 +79,10 @@ Leaf leaf_of(const Box& grown, FieldPtr field) {
   return {grown, std::move(field), lipschitz};
 }
 
-/// The parts of a narrowed box that may hold surface, all with the same field: a bound of a small box is far tighter than
-/// what a Lipschitz constant says about it, and costs less memory than a field of its own.
-void refine(const Box& box, const FieldPtr& field, const TracerOptions& options, int levels, std::vector<Leaf>& leaves) {
+/// The parts of a narrowed box that may hold surface, all with the same field: a bound of a small box is far tighter
+/// than what a Lipschitz constant says about it, and costs less memory than a field of its own.
+void refine(const Box& box, const FieldPtr& field, const TracerOptions& options, int levels,
+            std::vector<Leaf>& leaves) {
   const Box grown = box.grown(kOverlap * longest_side(box));
   const Interval bound = field->bound(grown);
   if (bound.lo > 0.0) return;

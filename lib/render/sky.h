@@ -21,7 +21,7 @@ namespace outcrop::render {
 /// Scene-referred linear light to display-referred sRGB in 0..1.
 [[nodiscard]] Vec3f display_colour(const Vec3f& linear);
 
-/// The i-th of n directions of the half space around `normal`, distributed by cosine: a rank-1 lattice shifted by `shift`.
+/// The i-th of n directions around `normal`, distributed by cosine: a rank-1 lattice shifted by `shift`.
 /// @param shift  In [0, 1)².
 [[nodiscard]] Vec3 cosine_direction(const Vec3& normal, int i, int n, const Vec2& shift);
 

@@ -73,7 +73,8 @@ TEST(Preview, ShowsABallWithItsSilhouetteDepthAndNormals) {
   const PreviewOptions options = options_for({centre - 3.0, centre + 3.0}, eye, centre);
   const Preview preview = render_preview(*ball, options);
   ASSERT_EQ(preview.layers.channel_names,
-            (std::vector<std::string>{"R", "G", "B", "A", "depth.Z", "normal.X", "normal.Y", "normal.Z", "material.ID"}));
+            (std::vector<std::string>{"R", "G", "B", "A", "depth.Z", "normal.X", "normal.Y", "normal.Z",
+                                      "material.ID"}));
   int inside = 0;
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x) {
@@ -106,7 +107,8 @@ TEST(Preview, HasNoHolesInClosedRock) {
     options.occlusion_samples = 0;
     const Preview preview = render_preview(*field, options);
     for (int y = 0; y < kHeight; ++y)
-      for (int x = 0; x < kWidth; ++x) ASSERT_EQ(preview.layers.at(x, y, kAlpha), 1.0f) << seed << ": " << x << ' ' << y;
+      for (int x = 0; x < kWidth; ++x)
+        ASSERT_EQ(preview.layers.at(x, y, kAlpha), 1.0f) << seed << ": " << x << ' ' << y;
   }
 }
 

@@ -116,7 +116,7 @@ class BlockPile final : public Field {
   std::vector<Block> blocks_;
 };
 
-/// Blocks of 1 to 3 m on a jittered lattice around `centre`, turned at random: overlapping, with cracks and hollows between.
+/// Blocks of 1 to 3 m on a jittered lattice around `centre`, turned at random: overlapping, with cracks between.
 inline FieldPtr block_pile(const Vec3& centre, const IVec3& count, Seed seed) {
   std::vector<BlockPile::Block> blocks;
   for (int k = 0; k < count.z; ++k)

@@ -76,8 +76,8 @@ TEST(Tracer, FindsWhatADenseMarchFindsInAPileOfBlocksAndOnSteepHills) {
       // Where the ray grazes an edge thinner than a pixel, either answer is right; elsewhere both agree.
       if (hit.has_value() != expected.has_value() || (hit && std::abs(hit->t - *expected) > 0.03)) ++missed;
       if (hit) {
-        ASSERT_LT(std::abs(field->value(hit->cut ? hit->position : hit->position + 0.1 * ray.width(hit->t) * ray.direction)),
-                  hit->cut ? 100.0 : 0.05);
+        const Vec3 behind = hit->position + 0.1 * ray.width(hit->t) * ray.direction;
+        ASSERT_LT(std::abs(field->value(behind)), hit->cut ? 100.0 : 0.05);
       }
     }
     EXPECT_GT(hits, 50);
@@ -165,7 +165,8 @@ TEST(Tracer, SeesNothingWhereThereIsNoRock) {
 
 TEST(Tracer, KeepsToItsNumberOfLeavesAndStaysRight) {
   const auto ball = std::make_shared<test::Ball>(Vec3(0.0), 2.0);
-  const Tracer tracer(*ball, {.region = {Vec3(-4.0), Vec3(4.0)}, .detail = 1e-3, .leaf_widths = 0.0, .max_leaves = 500});
+  const Box region{Vec3(-4.0), Vec3(4.0)};
+  const Tracer tracer(*ball, {.region = region, .detail = 1e-3, .leaf_widths = 0.0, .max_leaves = 500});
   RayCounters counters;
   EXPECT_LE(tracer.leaf_count(), 500u);
   const auto hit = tracer.closest({.origin = {0, -5, 0}, .direction = {0, 1, 0}}, counters);

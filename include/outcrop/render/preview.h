@@ -16,7 +16,7 @@ struct PreviewOptions {
   int width = 1280, height = 720;   ///< Pixels, 1 … 16384.
   Camera camera;
   Box region;                       ///< What is drawn, world metres; the field is cut off at its sides.
-  double detail = 0.25;             ///< Metres: leaf boxes of the hierarchy shrink to a few of these; match the mesh's cell.
+  double detail = 0.25;             ///< Metres: leaf boxes of the hierarchy shrink to this; match the mesh's cell.
   Vec3 sun{-0.5, -0.4, 0.75};       ///< Towards the sun, not zero.
   int occlusion_samples = 12;       ///< Sky rays a pixel for ambient occlusion, ≥ 0, shared by its pixel_samples.
   int pixel_samples = 4;            ///< Rays a pixel against jagged edges, ≥ 1.
@@ -35,8 +35,8 @@ struct Preview {
   PreviewStatistics statistics;
 };
 
-/// Sphere-traces the field inside an Embree hierarchy of boxes that `bound` could not exclude, in each of which the field
-/// is narrowed. One sun with shadows, sky ambient occlusion, colour by label. The same bytes for any number of threads.
+/// Sphere-traces the field inside an Embree hierarchy of boxes that `bound` could not exclude, in each of which the
+/// field is narrowed. One sun with shadows, sky ambient occlusion, colour by label. The same bytes for any number of threads.
 /// @throws ParameterError (naming what), Cancelled.
 [[nodiscard]] Preview render_preview(const Field& field, const PreviewOptions& options, const Task& task = {});
 

@@ -43,8 +43,8 @@ struct RayCounters {
 
 struct TracerOptions {
   Box region;                ///< The field is cut off at its sides.
-  double detail = 0.25;      ///< Metres, > 0: fields are narrowed to boxes of `leaf_details` of these, leaves are half as large.
-  double leaf_details = 2.0;
+  double detail = 0.25;      ///< Metres, > 0; match the mesh's cell.
+  double leaf_details = 2.0; ///< Fields are narrowed to boxes of so many details; leaves are half as large …
   double leaf_widths = 12.0; ///< … but not below this many ray widths, as seen from `eye`.
   Vec3 eye{0.0};
   double spread = 1e-3;      ///< Of the rays that leave the eye.
@@ -56,8 +56,8 @@ struct TracerOptions {
 /// The field inside a region, ready for rays: an octree of boxes that `bound` could not exclude, each with its narrowed
 /// field, in an Embree hierarchy.
 ///
-/// Each leaf is searched by sphere tracing with the narrowed field's own Lipschitz constant. What a leaf answers depends on
-/// the ray and the leaf alone, so that hits do not depend on the order of traversal.
+/// Each leaf is searched by sphere tracing with the narrowed field's own Lipschitz constant. What a leaf answers depends
+/// on the ray and the leaf alone, so that hits do not depend on the order of traversal.
 class Tracer {
  public:
   /// @param field  Owned by a shared_ptr, as all fields.
