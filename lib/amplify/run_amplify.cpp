@@ -17,7 +17,7 @@
 namespace outcrop {
 namespace {
 
-constexpr double kFocusBlocks = 16.0;         // Across the part that the default camera frames: each block is seen.
+constexpr double kFocusBlocks = 18.0;         // Across the part that the default camera frames: each block is seen.
 constexpr double kFocusHeight = 0.8;          // Of the focus's width.
 constexpr double kCameraTurn = radians(25);   // Off the fall line: walls seen at an angle show their depth.
 constexpr double kCameraRise = 0.35;          // Height over distance of the default camera.
@@ -91,12 +91,12 @@ PreviewOptions preview_options(const AmplifyRun& run, const AmplifyReport& repor
     const Vec3 from(c * d.x - s * d.y, s * d.x + c * d.y, kCameraRise);
     const Vec3 half(0.5 * size, 0.5 * size, 0.5 * kFocusHeight * size);
     options.camera = framed(*amplified.field, {steep.focus - half, steep.focus + half}, from, fov,
-                            double(run.width) / run.height);
+                            double(run.width) / run.height, amplified.region);
   }
-  // The sun stands to the upper left of the camera, a little behind it: light rakes over the rock.
+  // The sun stands high to the left behind the camera: light rakes over the rock and reaches into valleys.
   const CameraAxes axes = camera_axes(options.camera);
   const Vec3 ahead = glm::cross(Vec3(0, 0, 1), axes.right);
-  options.sun = glm::normalize(-0.8 * axes.right - 0.45 * ahead + Vec3(0, 0, 0.75));
+  options.sun = glm::normalize(-0.6 * axes.right - 0.5 * ahead + Vec3(0, 0, 0.85));
   return options;
 }
 
