@@ -68,6 +68,7 @@ class HoleField final : public Field {
 
 struct MadeRock {
   Tile tile;
+  double aperture = 0.0, rounding = 0.0;
   double block_size = 0.0;  ///< Cube root of the mean block volume.
   double reach = 0.0;       ///< Of the ground behind and before its blocks; 0 when it is not placeable.
   bool placeable = false;   ///< Large enough for the resolution.
@@ -80,13 +81,8 @@ double mean_volume(const Tile& tile) {
 }
 
 MadeRock make_rock(const RockMaterial& material, double default_side, const AmplifyOptions& options, Seed seed, const Task& task) {
-  const double side = material.tile_side > 0.0 ? material.tile_side : default_side;
-  TileOptions t{.type = material.block_type, .side = side, .spacing = material.sample_spacing};
-  if (material.joints) t.pattern = *material.joints;
-  t.aperture = material.aperture > 0.0 ? material.aperture : 0.002 * side;
-  t.rounding = material.rounding > 0.0 ? material.rounding : 0.0125 * side;
-  t.min_block_samples = material.min_block_samples;
-  MadeRock rock{.tile = make_tile(t, seed, task)};
+  const TileOptions tile = tile_options(material, default_side);
+  MadeRock rock{.tile = make_tile(tile, seed, task), .aperture = tile.aperture, .rounding = tile.rounding};
   rock.block_size = std::cbrt(mean_volume(rock.tile));
   double all = 0.0, large = 0.0;
   for (const Block& block : rock.tile.blocks) {
@@ -98,13 +94,10 @@ MadeRock make_rock(const RockMaterial& material, double default_side, const Ampl
 }
 
 Warp make_warp(const RockMaterial& material, double side, double resolution) {
-  const double amplitude = material.relief_amplitude < 0.0 ? 0.006 * side : material.relief_amplitude;
-  if (amplitude == 0.0) return {};
-  const double wanted = material.relief_period > 0.0 ? material.relief_period : side / 5.0;
-  const double period = side / std::max(1.0, std::round(side / wanted));
-  const auto path = material.relief.empty() ? find_relief("rough") : material.relief;
-  const ReliefPtr relief = read_relief(path, period);
-  return {std::make_shared<Relief>(relief->smoothed(2.0 * resolution)), amplitude};
+  const RockRelief measures = rock_relief(material, side);
+  if (measures.amplitude == 0.0) return {};
+  const ReliefPtr relief = read_relief(material.relief.empty() ? find_relief("rough") : material.relief, measures.period);
+  return {std::make_shared<Relief>(relief->smoothed(2.0 * resolution)), measures.amplitude};
 }
 
 RockReport report_of(const RockMaterial& material, const MadeRock& rock) {
@@ -234,7 +227,7 @@ Amplified amplify(const Heightfield& heightfield, const StrataFile& strata_file,
                       Vec3(0.0, 0.0, 1.0));
       const double size = rocks[m].block_size;
       const double side = rocks[m].tile.side;
-      const double aperture = material.aperture > 0.0 ? material.aperture : 0.002 * side;
+      const double aperture = rocks[m].aperture;
       // Cracks narrower than two cells are welded everywhere: a mesh would show them as scattered holes.
       const double swelling =
           0.5 * aperture * std::clamp(2.0 - aperture / options.resolution, 0.0, 1.0) * (1.0 + 1e-3);
@@ -247,7 +240,7 @@ Amplified amplify(const Heightfield& heightfield, const StrataFile& strata_file,
           .visible = visible,
           .crack_floor = displaced_terrain(filled, zone.recess, crack),
           // Half the crack, and the grooves that rounding leaves along edges (at most R/3 where three faces meet).
-          .closure = 0.5 * aperture + 0.34 * (material.rounding > 0.0 ? material.rounding : 0.0125 * side),
+          .closure = 0.5 * aperture + 0.34 * rocks[m].rounding,
           .closure_slope = kClosureSlope,
           .swelling = swelling,
           .min_inradius = 0.5 * kCellsInSmallestBlock * options.resolution,

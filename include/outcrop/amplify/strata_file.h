@@ -41,7 +41,8 @@ struct Placement {
 
 struct StrataFile {
   std::vector<RockMaterial> materials{RockMaterial{}};  ///< At least one.
-  Strata strata;                                        ///< Layers refer to materials by index.
+  /// Layers refer to materials by index; `reference` is relative to the terrain's south-west corner. amplify() converts.
+  Strata strata;
   /// `top` values were given relative to the terrain: 0 its lowest, 1 its highest point. amplify() converts.
   bool relative_tops = false;
   Placement placement;
