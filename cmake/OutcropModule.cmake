@@ -23,7 +23,7 @@ function(outcrop_test stage)
   target_include_directories(outcrop_${stage}_test PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_compile_definitions(outcrop_${stage}_test PRIVATE
     OUTCROP_SOURCE_DIR="${PROJECT_SOURCE_DIR}" OUTCROP_SHARED_DATA="${PROJECT_SOURCE_DIR}/../shared/data")
-  gtest_discover_tests(outcrop_${stage}_test DISCOVERY_MODE PRE_TEST PROPERTIES LABELS ${stage})
+  gtest_discover_tests(outcrop_${stage}_test DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60 PROPERTIES LABELS ${stage})
 endfunction()
 
 # Flags for everything that is ours; not part of the installed interface.

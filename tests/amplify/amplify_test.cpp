@@ -2,11 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "implicit/field_contract.h"
 #include "outcrop/core/parallel.h"
 #include "outcrop/core/rng.h"
+#include "outcrop/mesh/polygonize.h"
 #include "terraces.h"
 
 namespace outcrop {
@@ -48,6 +50,28 @@ TEST(Amplify, GivesMostOfTheSteepSurfaceToBlocksNearTheInputSurface) {
     EXPECT_LT(std::abs(a.mean_offset), 0.25 * a.mean_block_size) << name(type);
     EXPECT_GT(a.rocks.at(0).replicated_blocks, 50u) << name(type);
   }
+}
+
+TEST(Amplify, MeshVerticesOnGroundThatIsNotSteepLieOnTheInput) {
+  const Heightfield heightfield = test::terraces();
+  const double cell = 0.25;
+  const Amplified a = amplified(heightfield, small_blocks(), cell);
+  const TriangleMesh mesh = polygonize(*a.field, {.region = a.region, .resolution = cell, .parts = Parts::Grounded}).mesh;
+  std::size_t flat = 0;
+  for (const Vec3f& position : mesh.positions) {
+    const Vec3 p = mesh.origin + Vec3(position);
+    // Blocks may hang over the foot of a wall: flat ground means flat for a metre around.
+    double steepest = 0.0;
+    for (const Vec2& step : {Vec2(0, 0), Vec2(1, 0), Vec2(-1, 0), Vec2(0, 1), Vec2(0, -1)}) {
+      const Heightfield::Sample s = heightfield.at(p.x + step.x, p.y + step.y);
+      steepest = std::max(steepest, std::hypot(s.hx, s.hy));
+    }
+    if (steepest > std::tan(radians(35.0))) continue;
+    ++flat;
+    // The mesher keeps vertices a fiftieth of a cell away from its lattice's nodes (mesh/polygonize.h).
+    ASSERT_NEAR(p.z, heightfield.at(p.x, p.y).h, cell / 50.0 + 1e-3) << p.x << ' ' << p.y;
+  }
+  EXPECT_GT(flat, mesh.positions.size() / 5);
 }
 
 TEST(Amplify, PassesTheFieldContract) {
