@@ -18,7 +18,7 @@ struct PreviewOptions {
   Box region;                       ///< What is drawn, world metres; the field is cut off at its sides.
   double detail = 0.25;             ///< Metres: leaf boxes of the hierarchy shrink to this; match the mesh's cell.
   Vec3 sun{-0.5, -0.4, 0.75};       ///< Towards the sun, not zero.
-  int occlusion_samples = 12;       ///< Sky rays a pixel for ambient occlusion, ≥ 0, shared by its pixel_samples.
+  int occlusion_samples = 8;        ///< Sky rays a pixel for ambient occlusion, ≥ 0, shared by its pixel_samples.
   int pixel_samples = 4;            ///< Rays a pixel against jagged edges, ≥ 1.
   std::vector<Vec3f> colours;       ///< Linear albedo by label; missing ones are grey.
   Seed seed = 1;
