@@ -208,7 +208,7 @@ void write_image(const fs::path& path, const Image& image) {
     spec.attribute("DateTime", "");  // else the time of writing: the same picture must be the same bytes
   }
   const auto expect = [&](bool holds, const std::string& why) {
-    if (!holds) throw SystemError(path.string() + ": cannot be written: " + one_line(why));
+    if (!holds) throw SystemError(path.string() + ": cannot be written: " + one_line(why) + "; what was there before is unchanged");
   };
   const std::string temporary = file.temporary_path().string();
   const auto output = OIIO::ImageOutput::create(temporary);
