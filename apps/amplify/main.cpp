@@ -64,6 +64,11 @@ int main(int argc, char** argv) {
   app.add_flag("-q,--quiet", options.quiet, "No messages but errors");
   app.add_flag("-v,--verbose", options.verbose, "Progress even when stderr is no terminal");
 
+  app.footer("Without -o, --preview and --report it writes HEIGHTMAP_rock.ply and HEIGHTMAP_rock.png to this folder.\n"
+             "  amplify cliff.tif --dry-run\n"
+             "  amplify cliff.tif --strata data/strata/limestone.json --region 0 0 60 60 -o rock.ply --preview rock.png\n"
+             "All keys of strata.json and all file formats: docs/formats.md.");
+
   return outcrop::cli::run(app, argc, argv, options, [&](const outcrop::Task& task) {
     if (bilinear) run.interpolation = outcrop::Interpolation::Bilinear;
     if (!nodata.empty()) run.nodata = nodata == "hole" ? outcrop::NodataPolicy::Hole : outcrop::NodataPolicy::Fill;

@@ -173,7 +173,7 @@ std::pair<int, std::string> explained() {
   } catch (const ParameterError& e) {
     return {kCallersFault, e.what()};
   } catch (const Cancelled&) {
-    return {kInterrupted, "interrupted; nothing was written"};
+    return {kInterrupted, "interrupted; no file was left in part"};
   } catch (const std::bad_alloc&) {
     return {kOurFault, "out of memory"};
   } catch (const SystemError& e) {

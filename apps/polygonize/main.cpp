@@ -43,6 +43,10 @@ int main(int argc, char** argv) {
   app.add_flag("-q,--quiet", options.quiet, "No messages but errors");
   app.add_flag("-v,--verbose", options.verbose, "Progress even when stderr is no terminal");
 
+  app.footer("A scene in one line: {\"field\": {\"difference\": {\"a\": {\"box\": {}}, \"b\": {\"sphere\": {\"radius\": 1.2}}}}}\n"
+             "  polygonize scene.json -o solid.ply --preview solid.png\n"
+             "All kinds of fields and all file formats: docs/formats.md.");
+
   return outcrop::cli::run(app, argc, argv, options, [&](const outcrop::Task& task) {
     run.border = borders.at(border);
     run.parts = kept.at(parts);
