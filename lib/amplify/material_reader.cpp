@@ -63,7 +63,7 @@ std::optional<JointPattern> read_joints(JsonReader& reader, BlockType type, doub
   if (reader.has("centre_spacing"))
     pattern.centre_spacing = reader.number("centre_spacing", 0.0, {0.0, 1000.0}) * pattern_from_metres;
   if (reader.has("column_width"))
-    pattern.column_width = reader.number("column_width", 0.0, {0.0, 1000.0}) * pattern_from_metres;
+    pattern.column_width = reader.number("column_width", 0.0, {0.0, kPatternSide / pattern_from_metres / 5.0}) * pattern_from_metres;
   return pattern;
 }
 

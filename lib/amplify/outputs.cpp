@@ -10,6 +10,8 @@
 
 #include "outcrop/core/file.h"
 #include "outcrop/core/image.h"
+#include "outcrop/implicit/grid_field.h"
+#include "outcrop/implicit/primitives.h"
 
 namespace outcrop {
 namespace {
@@ -58,8 +60,26 @@ bool wants_triangles(const Outputs& outputs) {
   return std::any_of(outputs.meshes.begin(), outputs.meshes.end(), [](const auto& path) { return !is_vdb(path); });
 }
 
+bool wants_level_set(const Outputs& outputs) {
+  return std::any_of(outputs.meshes.begin(), outputs.meshes.end(), is_vdb);
+}
+
 void write_preview(const std::filesystem::path& path, const Preview& preview) {
   write_image(path, extension(path) == ".exr" ? preview.layers : preview.beauty);
+}
+
+void write_level_set(const std::filesystem::path& path, const TriangleMesh& mesh, double voxel, const Task& task) {
+  if (mesh.triangles.empty()) {
+    const Box outside{Vec3(0.0), Vec3(voxel)};
+    write_vdb(path, *sphere(Vec3(2.0 * kVdbBand * voxel), voxel), outside, voxel, Vec3(0.0), kVdbBand, task);
+    return;
+  }
+  std::vector<Vec3> vertices;
+  vertices.reserve(mesh.positions.size());
+  for (const Vec3f& p : mesh.positions) vertices.push_back(mesh.origin + Vec3(p));
+  const FieldPtr distance = mesh_distance(vertices, mesh.triangles, voxel, kVdbBand + 1.0, task);
+  const Box region = mesh.bounds().grown(kVdbBand * voxel);
+  write_vdb(path, *distance, region, voxel, Vec3(0.0), kVdbBand, task);
 }
 
 std::size_t memory_limit_bytes(double gib) {

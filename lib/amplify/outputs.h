@@ -11,6 +11,8 @@
 
 namespace outcrop {
 
+inline constexpr double kVdbBand = 3.0;  ///< Voxels of a level set on either side of the surface.
+
 /// Where a run wants to write.
 struct Outputs {
   std::vector<std::filesystem::path> meshes;    ///< .ply, .obj, .stl, .vdb
@@ -27,8 +29,14 @@ void check_outputs(const Outputs& outputs, const std::vector<std::filesystem::pa
 /// Whether any of the outputs needs triangles.
 [[nodiscard]] bool wants_triangles(const Outputs& outputs);
 
+/// Whether any of the outputs is a level set.
+[[nodiscard]] bool wants_level_set(const Outputs& outputs);
+
 /// Writes .png (beauty) or .exr (all layers).
 void write_preview(const std::filesystem::path& path, const Preview& preview);
+
+/// Writes the solid that a closed mesh bounds as a narrow-band level set, `.vdb`, in the mesh's own coordinates.
+void write_level_set(const std::filesystem::path& path, const TriangleMesh& mesh, double voxel, const Task& task);
 
 /// Half of the machine's memory, or `gib` when that is > 0; bytes. @throws ParameterError for anything else.
 [[nodiscard]] std::size_t memory_limit_bytes(double gib);

@@ -9,7 +9,6 @@
 #include "outcrop/amplify/report.h"
 #include "outcrop/core/file.h"
 #include "outcrop/core/parallel.h"
-#include "outcrop/implicit/grid_field.h"
 #include "outcrop/mesh/write_mesh.h"
 #include "outcrop/render/camera.h"
 #include "outputs.h"
@@ -66,6 +65,19 @@ Heightfield resampled(const Heightfield& heightfield, const Vec2& lo, const Vec2
                                         : static_cast<float>(heightfield.at(p.x, p.y).h));
     }
   return any ? Heightfield(std::move(grid)) : heightfield;
+}
+
+/// Lengths of materials whose tile the terrain decides: only now can they be held against it.
+void check_lengths(const AmplifyRun& run, const StrataFile& strata, double side) {
+  constexpr double kFinest = 1.0 / 100, kCoarsest = 1.0 / 4;  // Sample spacings, of the side.
+  for (const RockMaterial& material : strata.materials) {
+    const double spacing = material.sample_spacing;
+    if (material.tile_side > 0.0 || spacing == 0.0) continue;
+    if (spacing >= side * kFinest && spacing <= side * kCoarsest) continue;
+    throw InputError(run.strata.string() + ": material \"" + material.name + "\": sample_spacing: expected " +
+                     number_text(side * kFinest) + " to " + number_text(side * kCoarsest) +
+                     ", the terrain makes tile_side " + number_text(side) + "; got " + number_text(spacing));
+  }
 }
 
 PreviewOptions preview_options(const AmplifyRun& run, const AmplifyReport& report) {
@@ -183,6 +195,11 @@ class Runner {
     require(run_.width >= 16 && run_.width <= 16384 && run_.height >= 16 && run_.height <= 16384, "--size",
             "16 to 16384 pixels each", std::to_string(run_.width) + " " + std::to_string(run_.height));
     require(run_.fov_deg >= 1.0 && run_.fov_deg <= 150.0, "--fov-deg", "1 to 150 degrees", run_.fov_deg);
+    if (run_.camera) {
+      const std::array<double, 6>& c = *run_.camera;
+      require(c[0] != c[3] || c[1] != c[4] || c[2] != c[5], "--camera", "a target other than the position",
+              "the same twice");
+    }
     report_.memory_limit = memory_limit_bytes(run_.memory_limit_gib);
     check_outputs({run_.meshes, run_.previews, run_.report}, {run_.heightmap, run_.strata});
     report_.command = run_.command;
@@ -200,6 +217,7 @@ class Runner {
     HeightfieldFile file = read_heightfield(run_.heightmap, run_.heights);
     for (const std::string& line : file.notes) note(run_.heightmap.string() + ": " + line);
     report_.heightfield = make_heightfield(run_, std::move(file));
+    check_lengths(run_, report_.rock, default_tile_side(*report_.heightfield));
     report_.seconds.reading = watch_.lap();
     task_.check();
   }
@@ -240,6 +258,7 @@ class Runner {
 
   void mesh() {
     const Vec3 origin(report_.heightfield->lo(), 0.0);
+    TriangleMesh mesh;
     if (wants_triangles({run_.meshes, {}, {}})) {
       // A sheet has no walls: it is cut where data are missing. A solid gets walls there, as at the region's border.
       const bool cut = amplified().hole && !run_.solid;
@@ -247,7 +266,7 @@ class Runner {
       if (cut) made.mesh = clip_mesh(made.mesh, *amplified().hole);
       report_.polygonized = made.statistics;
       report_.seconds.meshing = watch_.lap();
-      const TriangleMesh mesh = rebased(std::move(made.mesh), origin);
+      mesh = rebased(std::move(made.mesh), origin);
       const MeshMetadata metadata{comments(report_, report_.heightfield->lo()), amplified().label_names,
                                   amplified().label_colours};
       task_.begin("writing", run_.meshes.size());
@@ -258,12 +277,24 @@ class Runner {
       }
       if (!run_.report.empty()) report_.mesh = check_mesh(mesh);
     }
+    if (wants_level_set({run_.meshes, {}, {}})) level_sets(run_.solid && !mesh.triangles.empty() ? mesh : solid_mesh(origin));
+    report_.seconds.writing = watch_.lap();
+  }
+
+  /// That of --solid: nothing floats in it and no void hides. A level set holds it, whatever the meshes are.
+  [[nodiscard]] TriangleMesh solid_mesh(const Vec3& origin) const {
+    PolygonizeOptions options = mesh_options();
+    options.border = Border::Closed;
+    options.normals = options.labels = false;
+    return rebased(polygonize(*amplified().field, options, task_).mesh, origin);
+  }
+
+  void level_sets(const TriangleMesh& solid) {
     for (const auto& path : run_.meshes) {
       if (!is_vdb(path)) continue;
-      write_vdb(path, *amplified().field, amplified().region, report_.options.resolution, origin, kVdbBand, task_);
+      write_level_set(path, solid, report_.options.resolution, task_);
       written(path, "a level set");
     }
-    report_.seconds.writing = watch_.lap();
   }
 
   void preview() {
@@ -290,8 +321,6 @@ class Runner {
     say("wrote " + path.string() + ": " + what);
     task_.check();
   }
-
-  static constexpr double kVdbBand = 3.0;  // Voxels on either side of the surface.
 
   AmplifyRun run_;
   const Notify& notify_;

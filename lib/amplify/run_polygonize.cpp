@@ -16,7 +16,6 @@
 namespace outcrop {
 namespace {
 
-constexpr double kVdbBand = 3.0;               // Voxels on either side of the surface.
 constexpr double kFieldOfView = radians(35.0);
 const Vec3 kViewFrom(0.9, -1.2, 0.8);          // A corner view from above.
 const Vec3 kSun(-0.45, -0.6, 0.8);
@@ -61,6 +60,13 @@ PolygonizeOptions mesh_options(const PolygonizeRun& run, const Scene& scene) {
           .memory_limit = memory_limit_bytes(run.memory_limit_gib)};
 }
 
+/// What a level set holds: the same parts as the mesh, with walls where the solid leaves the region.
+TriangleMesh closed_mesh(const Field& field, PolygonizeOptions options, const Task& task) {
+  options.border = Border::Closed;
+  options.normals = options.labels = false;
+  return rebased(polygonize(field, options, task).mesh, Vec3(0.0));
+}
+
 Preview preview(const PolygonizeRun& run, const Scene& scene, const PolygonizeOptions& mesh, const Task& task) {
   PreviewOptions options;
   options.width = run.width;
@@ -93,9 +99,10 @@ std::string run_polygonize(const PolygonizeRun& run, const Notify& notify, const
            "\ntriangles  " + count_text(double(estimate.triangles)) + "\nmemory     " + byte_text(double(estimate.bytes)) +
            "\n";
   }
-  if (wants_triangles({run.meshes, {}, {}})) {
+  if (!run.meshes.empty()) {
     const TriangleMesh mesh = rebased(polygonize(*scene.field, options, task).mesh, Vec3(0.0));
-    if (mesh.triangles.empty() && notify) notify("the region holds no surface: the mesh is empty");
+    if (mesh.triangles.empty() && notify)
+      notify("cells of " + number_text(options.resolution) + " m find no surface in the region: the mesh is empty");
     const MeshMetadata metadata{{"outcrop " + std::string(version()) + " polygonize " + run.input.filename().string(),
                                  "resolution " + number_text(options.resolution, 9) + " m"},
                                 scene.label_names,
@@ -105,11 +112,19 @@ std::string run_polygonize(const PolygonizeRun& run, const Notify& notify, const
       write_mesh(path, mesh, metadata, task);
       written(path, count_text(double(mesh.triangles.size())) + " triangles");
     }
-  }
-  for (const auto& path : run.meshes) {
-    if (!is_vdb(path)) continue;
-    write_vdb(path, *scene.field, options.region, options.resolution, Vec3(0.0), kVdbBand, task);
-    written(path, "a level set");
+    if (wants_level_set({run.meshes, {}, {}})) {
+      const bool walls = options.border == Border::Closed || options.keep_voids;
+      const TriangleMesh solid = walls ? mesh : closed_mesh(*scene.field, options, task);
+      for (const auto& path : run.meshes) {
+        if (!is_vdb(path)) continue;
+        // The distance to a mesh knows no voids: to keep them, the field is written as it is, with all its parts.
+        if (options.keep_voids)
+          write_vdb(path, *scene.field, options.region, options.resolution, Vec3(0.0), kVdbBand, task);
+        else
+          write_level_set(path, solid, options.resolution, task);
+        written(path, "a level set");
+      }
+    }
   }
   if (!run.previews.empty()) {
     const Preview picture = preview(run, scene, options, task);

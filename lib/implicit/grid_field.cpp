@@ -455,8 +455,9 @@ FieldPtr mesh_distance(std::span<const Vec3> vertices, std::span<const std::arra
   for (const auto& triangle : triangles)
     for (const std::uint32_t v : triangle) require(v < vertices.size(), "mesh", "triangles of its own vertices", v);
   openvdb::initialize();
-  // Around the box's centre, where floats resolve fractions of a voxel also in world coordinates of millions of metres.
-  const Vec3 centre = box.centre();
+  // Around the box's centre, where floats resolve fractions of a voxel also in world coordinates of millions of metres;
+  // on whole voxels, so that write_vdb with the same voxel samples the nodes and smooths nothing.
+  const Vec3 centre = glm::round(box.centre() / voxel) * voxel;
   std::vector<openvdb::Vec3s> points;
   for (const Vec3& v : vertices) {
     const Vec3 local = (v - centre) / voxel;

@@ -202,6 +202,14 @@ class BadOptions(ProgramTest):
         result = self.small("--preview", "out/a.png", "--camera", "40", "24", "0", "0", "24", "5", "--quiet")
         self.assert_refused(result, "camera")
 
+    def test_a_camera_that_looks_at_itself_is_refused_before_work(self):
+        self.assert_refused(self.amplify("cliff.exr", "-o", "out/a.ply", "--preview", "out/a.png",
+                                         "--camera", "1", "2", "3", "1", "2", "3"), "camera", "target")
+
+    def test_a_spacing_that_the_terrain_makes_too_fine_names_file_and_material(self):
+        self.assert_strata_refused('{"materials": [{"name": "slate", "sample_spacing": 0.001}]}', "slate", "sample_spacing",
+                                   "0.001")
+
     def test_help_and_version(self):
         for program in (AMPLIFY, POLYGONIZE):
             for option in ("--help", "--version"):
@@ -319,6 +327,22 @@ class GoodRuns(ProgramTest):
             self.small("-o", "out/%s.ply" % threads, "--threads", threads, "--quiet")
         with open(self.path("out", "1.ply"), "rb") as one, open(self.path("out", "2.ply"), "rb") as two:
             self.assertEqual(one.read(), two.read())
+
+    def test_a_level_set_holds_the_parts_that_the_mesh_holds(self):
+        ball = '{"sphere": {"radius": 0.5}}'
+        hollow = '{"difference": {"a": {"sphere": {"centre": [3, 0, 0]}}, "b": {"sphere": {"centre": [3, 0, 0], "radius": 0.6}}}}'
+        self.write("scene.json", '{"resolution": 0.1, "field": {"union": [%s, %s]}}' % (ball, hollow))
+
+        def triangles(*options):
+            made = self.run_program(POLYGONIZE, "scene.json", "-o", "out/a.vdb", *options)
+            self.assertEqual(made.returncode, 0, made.stderr)
+            read = self.run_program(POLYGONIZE, "out/a.vdb", "-o", "out/a.ply", "--keep-voids", "--resolution", "0.1")
+            self.assertEqual(read.returncode, 0, read.stderr)
+            return int(read.stderr.split(": ")[-1].replace(" triangles", "").replace(" ", ""))
+
+        everything, solid, largest = triangles("--keep-voids"), triangles(), triangles("--parts", "largest")
+        self.assertLess(solid, 0.9 * everything)
+        self.assertLess(largest, 0.9 * solid)
 
     def test_polygonize_goes_round_through_its_own_formats(self):
         self.write("scene.json", '{"field": {"smooth_union": {"radius": 0.3, "of": [{"box": {"rounding": 0.1}},'
