@@ -277,7 +277,10 @@ class Runner {
       }
       if (!run_.report.empty()) report_.mesh = check_mesh(mesh);
     }
-    if (wants_level_set({run_.meshes, {}, {}})) level_sets(run_.solid && !mesh.triangles.empty() ? mesh : solid_mesh(origin));
+    if (wants_level_set({run_.meshes, {}, {}})) {
+      const bool made = run_.solid && !mesh.triangles.empty();
+      level_sets(made ? std::move(mesh) : solid_mesh(origin));
+    }
     report_.seconds.writing = watch_.lap();
   }
 
