@@ -17,8 +17,8 @@ namespace outcrop {
 namespace {
 
 constexpr double kReachInBlocks = 1.8;       // Mean block sizes; recess 1 hides the base behind whole blocks.
-constexpr double kRasterPerReach = 12.0;     // Raster nodes of the rock zone across its reach …
-constexpr double kRasterNodes = 4e6;         // … but no more than this many in all: 40 bytes each, three layers.
+constexpr double kRasterPerReach = 64.0;     // Nodes of the rock zone's raster across its reach: rims lose two of them …
+constexpr double kRasterNodes = 4e6;         // … but no more than this many in all: 42 bytes each, two layers.
 constexpr double kPlaceableShare = 0.7;      // Of a tile's volume; below that, its blocks are too small for the resolution.
 constexpr double kCellsInSmallestBlock = 2.0;  // Design decision 10.
 constexpr double kClosureSlope = 0.05;       // Blocks grow by this much a metre below the crack floor.
@@ -112,7 +112,7 @@ RockReport report_of(const RockMaterial& material, const MadeRock& rock) {
 }
 
 /// Walks from the air side of the input surface inwards along its normal and asks who is met first.
-void measure(Amplified& result, const Field& rock, const RockZone& zone, double reach, double slope, Seed seed) {
+void measure(Amplified& result, const Field& rock, const Heightfield& heightfield, double reach, double slope, Seed seed) {
   const Vec2 lo(result.region.lo), hi(result.region.hi);
   const double threshold = std::cos(slope);
   int probes = 0, on_blocks = 0;
@@ -121,7 +121,7 @@ void measure(Amplified& result, const Field& rock, const RockZone& zone, double 
     Rng rng(seed, "coverage", static_cast<std::uint64_t>(i));
     const double x = rng.uniform(lo.x, hi.x);
     const double y = rng.uniform(lo.y, hi.y);
-    if (zone.recess.at(x, y).h <= 0.0) continue;
+    if (heightfield.has_holes() && heightfield.hole_distance(x, y) > 0.0) continue;
     const double h = -result.terrain->value({x, y, 0.0});
     const Vec3 p(x, y, h);
     const Vec3 n = glm::normalize(result.terrain->gradient(p));
@@ -271,7 +271,7 @@ Amplified amplify(const Heightfield& heightfield, const StrataFile& strata_file,
   result.region = {Vec3(lo, heights.lo - floor), Vec3(hi, top + 2.0 * options.resolution)};
   if (rock_field) {
     task.begin("measuring the rock", 0);
-    measure(result, *rock_field, zone, reach, placement.slope, options.seed);
+    measure(result, *rock_field, heightfield, reach, placement.slope, options.seed);
   }
   result.placement_seconds = seconds_since(start);
   return result;

@@ -15,16 +15,16 @@ struct RockZoneOptions {
   double reach = 1.0;     ///< Largest horizontal distance by which the ground may advance, metres, > 0.
   double recess = 1.0;    ///< It may withdraw by this many times the reach, ≥ 0.
   std::function<double(const Vec3&)> reach_at;  ///< At a point of the surface, [0, reach]; 0: left alone. Null: `reach`.
-  double spacing = 1.0;   ///< Of the raster, metres, > 0.
+  double spacing = 1.0;   ///< Of the raster that the rim is drawn on, metres, > 0.
   double block_size = 0.0;  ///< Metres; ledges narrower than this count as part of the wall. 0: none do.
 };
 
 /// On steep ground the surface may lie anywhere between h − recess and h + advance.
 ///
-/// Both envelopes are the lowest and the highest ground within a horizontal radius that grows from 0 at the rim of the
-/// steep ground to `reach`: on a wall they are the wall moved back and forth by that radius. At its top the advance does not
-/// leave the level of the plateau; at its foot the recess goes on below the floor, where blocks stand as well. Both are exactly 0 over nodata and over ground that is not steep, unless it is
-/// a ledge of the wall narrower than a block.
+/// Both envelopes are the lowest and the highest ground within `reach`: on a wall they are the wall moved back and forth by it.
+/// At its top the advance does not leave the level of the plateau; at its foot the recess goes on below the floor, where blocks
+/// stand as well. They grow from 0 at the rim of the steep ground, and are exactly 0 over nodata and over ground that is not
+/// steep, unless it is a ledge of the wall narrower than a block.
 struct RockZone {
   Heightfield recess;   ///< ≥ 0, metres, bilinear.
   Heightfield advance;  ///< ≥ 0, metres, bilinear.
@@ -33,7 +33,7 @@ struct RockZone {
   bool empty = true;    ///< No steep ground at all.
 };
 
-/// Cost: O(raster nodes · (reach / spacing)²) on steep ground, O(nodes) elsewhere.
+/// Cost: O(nodes of the raster); O(12² · recess²) more for each of a coarser raster's nodes near steep ground, 12 of them a reach.
 [[nodiscard]] RockZone make_rock_zone(const Heightfield& heightfield, const RockZoneOptions& options, const Task& task = {});
 
 /// terrain + factor · layer(x, y): the terrain withdrawn (factor > 0) or advanced (< 0).

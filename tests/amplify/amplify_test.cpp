@@ -43,7 +43,7 @@ TEST(Amplify, LeavesGroundBelowTheSlopeThresholdUnchangedToTheBit) {
   EXPECT_GT(flat, 5000);
 }
 
-TEST(Amplify, GivesMostOfTheRockZoneToBlocksNearTheInputSurface) {
+TEST(Amplify, GivesNineTenthsOfTheSteepSurfaceToBlocksNearTheInput) {
   for (const BlockType type : {BlockType::Equidimensional, BlockType::Rhombohedral, BlockType::Tabular}) {
     const Amplified a = amplified(test::terraces(), small_blocks(type));
     EXPECT_GE(a.rock_coverage, 0.9) << name(type);

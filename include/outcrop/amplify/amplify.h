@@ -41,7 +41,7 @@ struct Amplified {
   std::vector<std::string> label_names;    ///< Label → name: the materials in order, then "ground".
   std::vector<Vec3f> label_colours;
   std::vector<RockReport> rocks;
-  double rock_coverage = 0.0;  ///< Share of the rock zone's steep surface that is blocks (sampled; rims and small spots left out).
+  double rock_coverage = 0.0;  ///< Share of the input's steep surface that is blocks, sampled.
   double mean_offset = 0.0;                ///< Mean signed distance of rock from the input surface, metres (sampled).
   double mean_block_size = 0.0;            ///< Cube root of the mean block volume, metres; largest over materials.
   double tile_seconds = 0.0, placement_seconds = 0.0;

@@ -34,7 +34,7 @@ struct Placement {
   double slope = radians(40.0);   ///< Ground flatter than this is left alone, radians.
   double recess = 1.0;            ///< How far the base withdraws behind the blocks, in mean block sizes, [0, 4].
   double distance_lo = -1000.0;   ///< Anchors between these distances to the surface, in mean block sizes (negative: inside).
-  double distance_hi = 0.0;
+  double distance_hi = 0.05;  ///< A little outside: a block that is missing at the top of a wall bares the ground behind it.
   double crack_depth = 0.15;      ///< Cracks are open down to this depth below the original surface, in mean block sizes.
   double lattice_azimuth = radians(27.0);  ///< The tile lattice is turned by this about the vertical, against repetition.
 };

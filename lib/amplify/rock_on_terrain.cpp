@@ -1,0 +1,197 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "rock_zone.h"
+
+namespace outcrop {
+namespace {
+
+constexpr std::size_t kChunk = 256;
+constexpr double kBareSlope = 0.15;  // Radians beyond the threshold at which ground without blocks is bare rock.
+
+Box flat_box(const Vec2& lo, const Vec2& hi) { return {Vec3(lo, 0.0), Vec3(hi, 0.0)}; }
+
+class DisplacedTerrain final : public Field {
+ public:
+  DisplacedTerrain(FieldPtr terrain, Heightfield layer, double factor, const Box& rectangle)
+      : terrain_(std::move(terrain)), layer_(std::move(layer)), factor_(factor) {
+    lipschitz_ = terrain_->lipschitz() + std::abs(factor_) * layer_.slope_bound(Vec2(rectangle.lo), Vec2(rectangle.hi));
+  }
+
+  void values(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept override {
+    terrain_->values(points, values, gradients);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Heightfield::Sample s = layer_.at(points.x[i], points.y[i]);
+      values[i] += factor_ * s.h;
+      if (!gradients.empty()) gradients[i] += factor_ * Vec3(s.hx, s.hy, 0.0);
+    }
+  }
+  [[nodiscard]] double lipschitz() const noexcept override { return lipschitz_; }
+  [[nodiscard]] Interval bound(const Box& box) const noexcept override {
+    const Interval f = terrain_->bound(box);
+    const Interval e = layer_.height_bound(Vec2(box.lo), Vec2(box.hi));
+    return {f.lo + std::min(factor_ * e.lo, factor_ * e.hi), f.hi + std::max(factor_ * e.lo, factor_ * e.hi)};
+  }
+  [[nodiscard]] FieldPtr narrow(const Box& box) const override {
+    return std::make_shared<DisplacedTerrain>(terrain_->narrow(box), layer_, factor_, box);
+  }
+
+ private:
+  FieldPtr terrain_;
+  Heightfield layer_;
+  double factor_;
+  double lipschitz_ = 1.0;
+};
+
+/// Which of the three surfaces can be the field's somewhere in a box.
+struct Contenders {
+  bool clip = true, base = true, rock = true;
+};
+
+/// See rock_on_terrain. What is no contender is neither evaluated nor counted in the Lipschitz constant.
+class RockOnTerrain final : public Field {
+ public:
+  RockOnTerrain(FieldPtr terrain, RockZone zone, FieldPtr rock, FieldPtr strata, Label ground, Contenders contenders,
+                const Box& rectangle)
+      : terrain_(std::move(terrain)),
+        zone_(std::move(zone)),
+        rock_(std::move(rock)),
+        strata_(std::move(strata)),
+        ground_(ground),
+        cos_slope_(std::cos(std::min(zone_.slope + kBareSlope, 0.5 * kPi))),
+        can_(contenders) {
+    const Vec2 lo(rectangle.lo), hi(rectangle.hi);
+    if (can_.base) lipschitz_ = terrain_->lipschitz() + zone_.recess.slope_bound(lo, hi);
+    if (can_.clip) lipschitz_ = std::max(lipschitz_, terrain_->lipschitz() + zone_.advance.slope_bound(lo, hi));
+    if (can_.rock) lipschitz_ = std::max(lipschitz_, rock_->lipschitz());
+  }
+
+  void values(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept override {
+    for (std::size_t first = 0; first < points.size(); first += kChunk) {
+      const std::size_t count = std::min(kChunk, points.size() - first);
+      chunk(points.subspan(first, count), values.subspan(first, count),
+            gradients.empty() ? gradients : gradients.subspan(first, count));
+    }
+  }
+
+  [[nodiscard]] double lipschitz() const noexcept override { return lipschitz_; }
+
+  [[nodiscard]] Interval bound(const Box& box) const noexcept override { return parts(box).whole; }
+
+  [[nodiscard]] FieldPtr narrow(const Box& box) const override {
+    const Parts p = parts(box);
+    if (p.outside) return terrain_->narrow(box);
+    // min and max return one of their arguments: a contender that loses everywhere in the box is dropped to the bit.
+    Contenders can = can_;
+    can.rock = can_.rock && !(can_.base && p.rock.lo > p.base.hi);
+    can.base = can_.base && !(can.rock && p.base.lo > p.rock.hi);
+    can.clip = can_.clip && !(p.clip.hi < p.inner.lo);
+    if (!can.base && !can.clip) return rock_->narrow(box);
+    return std::make_shared<RockOnTerrain>(terrain_->narrow(box), zone_, can.rock ? rock_->narrow(box) : nullptr, strata_,
+                                           ground_, can, box);
+  }
+
+  void labels(const Points& points, std::span<Label> labels) const noexcept override {
+    strata_->labels(points, labels);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Vec3 p = points[i];
+      const Heightfield::Sample recess = zone_.recess.at(p.x, p.y);
+      const bool outside = recess.h <= 0.0 && zone_.advance.at(p.x, p.y).h <= 0.0;
+      if (!outside && can_.rock && (!can_.base || rock_->value(p) < terrain_->value(p) + recess.h)) {
+        rock_->labels(points.subspan(i, 1), labels.subspan(i, 1));
+      } else {
+        const Vec3 up = terrain_->gradient(p) + Vec3(recess.hx, recess.hy, 0.0);
+        if (up.z > cos_slope_ * glm::length(up)) labels[i] = ground_;
+      }
+    }
+  }
+
+ private:
+  struct Parts {
+    bool outside;  ///< Both envelopes are 0 in the box.
+    Interval clip, base, rock, inner, whole;
+  };
+
+  [[nodiscard]] Parts parts(const Box& box) const noexcept {
+    const Vec2 lo(box.lo), hi(box.hi);
+    const Interval recess = zone_.recess.height_bound(lo, hi);
+    const Interval advance = zone_.advance.height_bound(lo, hi);
+    const Interval f = terrain_->bound(box);
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    Parts p{.outside = recess.hi <= 0.0 && advance.hi <= 0.0,
+            .clip = {f.lo - advance.hi, f.hi - std::max(advance.lo, 0.0)},
+            .base = {f.lo + std::max(recess.lo, 0.0), f.hi + recess.hi},
+            .rock = {-kInfinity, kInfinity},
+            .inner = {-kInfinity, kInfinity},
+            .whole = f};
+    if (p.outside) return p;
+    // Where all of the box is air above the clip or rock below the base, the blocks need not be asked.
+    if (can_.rock && can_.base && (p.clip.lo > 0.0 || p.base.hi < 0.0)) {
+      p.whole = {can_.clip ? p.clip.lo : -kInfinity, std::max(p.clip.hi, p.base.hi)};
+      if (std::isfinite(p.whole.lo)) return p;
+    }
+    if (can_.rock) p.rock = rock_->bound(box);
+    p.inner = !can_.rock ? p.base : !can_.base ? p.rock : outcrop::min(p.base, p.rock);
+    p.whole = can_.clip ? outcrop::max(p.clip, p.inner) : p.inner;
+    return p;
+  }
+
+  void chunk(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept {
+    const std::size_t n = points.size();
+    const bool wants_gradients = !gradients.empty();
+    terrain_->values(points, values, gradients);
+    std::array<Heightfield::Sample, kChunk> recess, advance;
+    bool any = false;
+    for (std::size_t i = 0; i < n; ++i) {
+      recess[i] = zone_.recess.at(points.x[i], points.y[i]);
+      advance[i] = zone_.advance.at(points.x[i], points.y[i]);
+      any = any || recess[i].h > 0.0 || advance[i].h > 0.0;
+    }
+    if (!any) return;
+    std::array<double, kChunk> rock;
+    std::array<Vec3, kChunk> rock_gradients;
+    if (can_.rock)
+      rock_->values(points, {rock.data(), n}, wants_gradients ? std::span(rock_gradients).first(n) : std::span<Vec3>{});
+    for (std::size_t i = 0; i < n; ++i) {
+      const double f = values[i];
+      const bool rock_wins = can_.rock && (!can_.base || rock[i] < f + recess[i].h);
+      const double inner = rock_wins ? rock[i] : f + recess[i].h;
+      const double clip = f - advance[i].h;
+      const bool clip_wins = can_.clip && clip > inner;
+      values[i] = clip_wins ? clip : inner;
+      if (!wants_gradients) continue;
+      if (clip_wins)
+        gradients[i] -= Vec3(advance[i].hx, advance[i].hy, 0.0);
+      else if (rock_wins)
+        gradients[i] = rock_gradients[i];
+      else
+        gradients[i] += Vec3(recess[i].hx, recess[i].hy, 0.0);
+    }
+  }
+
+  FieldPtr terrain_;
+  RockZone zone_;
+  FieldPtr rock_, strata_;
+  Label ground_;
+  double cos_slope_;
+  Contenders can_;
+  double lipschitz_ = 1.0;
+};
+
+}  // namespace
+
+FieldPtr displaced_terrain(FieldPtr terrain, Heightfield layer, double factor) {
+  const Box rectangle = flat_box(layer.lo(), layer.hi());
+  return std::make_shared<DisplacedTerrain>(std::move(terrain), std::move(layer), factor, rectangle);
+}
+
+FieldPtr rock_on_terrain(FieldPtr terrain, RockZone zone, FieldPtr rock, FieldPtr strata, Label ground) {
+  const Box rectangle = flat_box(zone.recess.lo(), zone.recess.hi());
+  return std::make_shared<RockOnTerrain>(std::move(terrain), std::move(zone), std::move(rock), std::move(strata), ground,
+                                         Contenders{.rock = rock != nullptr}, rectangle);
+}
+
+}  // namespace outcrop
