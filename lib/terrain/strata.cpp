@@ -65,18 +65,27 @@ double undulation_noise(std::uint64_t seed, Vec2 p) noexcept {
 
 }  // namespace
 
+double Strata::planar_height(const Vec3& p) const noexcept {
+  return p.z + std::tan(dip) * glm::dot(Vec2(p.x, p.y) - reference, dip_vector(dip_direction));
+}
+
 double Strata::stratigraphic_height(const Vec3& p) const noexcept {
-  const Vec2 offset = Vec2(p.x, p.y) - reference;
-  double height = p.z + std::tan(dip) * glm::dot(offset, dip_vector(dip_direction));
-  if (undulation > 0.0) height -= undulation * undulation_noise(seed, offset / undulation_wavelength);
-  return height;
+  const double height = planar_height(p);
+  if (!(undulation > 0.0)) return height;
+  return height - undulation * undulation_noise(seed, (Vec2(p.x, p.y) - reference) / undulation_wavelength);
 }
 
 Label Strata::material(const Vec3& p) const noexcept {
   if (layers.empty()) return 0;
-  const double height = stratigraphic_height(p);
   const auto last = std::prev(layers.end());
-  return std::find_if(layers.begin(), last, [&](const Stratum& s) { return height < s.top; })->material;
+  const auto layer_at = [&](double height) {
+    return std::find_if(layers.begin(), last, [&](const Stratum& s) { return height < s.top; });
+  };
+  // Most points are so far from any boundary that the noise, which is dear and stays within ±1, cannot matter.
+  const double planar = planar_height(p);
+  const auto lowest = layer_at(planar - undulation);
+  if (layer_at(planar + undulation) == lowest) return lowest->material;
+  return layer_at(stratigraphic_height(p))->material;
 }
 
 Mat3 Strata::world_from_bedding() const noexcept {

@@ -106,5 +106,21 @@ TEST(Strata, MaterialIsTheFirstLayerWhoseTopIsAbove) {
   EXPECT_EQ(strata.material({0, 0, 1e6}), 9);
 }
 
+TEST(Strata, MaterialFollowsTheUndulatingHeight) {
+  for_each_seed(8, [](Seed seed) {
+    Strata strata = random_strata(seed);
+    strata.undulation = 4.0;
+    for (int i = 0; i < 6; ++i) strata.layers.push_back({.material = static_cast<Label>(i + 1), .top = 3.0 * i});
+    Rng rng(seed, "material");
+    for (int i = 0; i < 5000; ++i) {
+      const double x = rng.uniform(-20.0, 20.0), y = rng.uniform(-20.0, 20.0), z = rng.uniform(-40.0, 60.0);
+      const Vec3 p(Vec2(x, y) + strata.reference, z);
+      const double height = strata.stratigraphic_height(p);
+      const int below = std::clamp(static_cast<int>(std::floor(height / 3.0)) + 1, 0, 5);
+      ASSERT_EQ(strata.material(p), below + 1) << height;
+    }
+  });
+}
+
 }  // namespace
 }  // namespace outcrop

@@ -33,6 +33,10 @@ struct Strata {
   [[nodiscard]] Label material(const Vec3& p) const noexcept;
   /// The rotation that carries the horizontal onto the bedding plane.
   [[nodiscard]] Mat3 world_from_bedding() const noexcept;
+
+ private:
+  /// Without the undulation.
+  [[nodiscard]] double planar_height(const Vec3& p) const noexcept;
 };
 
 }  // namespace outcrop
