@@ -32,6 +32,37 @@ constexpr int kOurFault = 1;
 constexpr int kCallersFault = 2;
 constexpr int kInterrupted = 130;
 
+constexpr int kSignals[] = {SIGINT, SIGTERM};
+constexpr std::string_view kInterruptedText = "interrupted; no file was left in part";
+
+// nohup and shells' & ask to be spared.
+void handle_unless_ignored(void (*handler)(int)) {
+  struct sigaction action {};
+  action.sa_handler = handler;
+  action.sa_flags = SA_RESTART;
+  for (const int signal : kSignals) {
+    struct sigaction before {};
+    sigaction(signal, nullptr, &before);
+    if (before.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
+  }
+}
+
+void write_error(std::string_view text) { (void)!::write(STDERR_FILENO, text.data(), text.size()); }
+
+// Until `run` listens there is no file and nothing to wait for.
+extern "C" void leave_at_once(int) {
+  write_error(program_invocation_short_name);
+  write_error(": ");
+  write_error(kInterruptedText);
+  write_error("\n");
+  _exit(kInterrupted);
+}
+
+// The loader calls what stands in this section before the constructors of any library. While it maps and relocates
+// them, a tenth of a second, the kernel's own way applies: the signal ends the program without a word.
+extern "C" void listen_early() { handle_unless_ignored(leave_at_once); }
+[[gnu::section(".preinit_array"), gnu::used]] void (*const g_listen_early)() = listen_early;
+
 // Set by the handler, which may run on any thread: libraries start threads before main that block no signal.
 sem_t g_arrived;
 volatile std::sig_atomic_t g_signals = 0;
@@ -51,14 +82,7 @@ class Interrupts {
   Interrupts() {
     sem_init(&g_arrived, 0, 0);
     watcher_ = std::thread([this] { watch(); });
-    struct sigaction action {};
-    action.sa_handler = note_signal;
-    action.sa_flags = SA_RESTART;
-    for (const int signal : {SIGINT, SIGTERM}) {
-      struct sigaction before {};
-      sigaction(signal, nullptr, &before);
-      if (before.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);  // nohup and shells' & ask to be spared
-    }
+    handle_unless_ignored(note_signal);
   }
   ~Interrupts() {
     finished_ = true;
@@ -173,7 +197,7 @@ std::pair<int, std::string> explained() {
   } catch (const ParameterError& e) {
     return {kCallersFault, e.what()};
   } catch (const Cancelled&) {
-    return {kInterrupted, "interrupted; no file was left in part"};
+    return {kInterrupted, std::string(kInterruptedText)};
   } catch (const std::bad_alloc&) {
     return {kOurFault, "out of memory"};
   } catch (const SystemError& e) {

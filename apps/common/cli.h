@@ -22,8 +22,9 @@ struct Options {
 ///
 /// 0: done, or help or version was asked for. 1: the machine's fault or ours. 2: the command line, an option or an
 /// input cannot be used. 130: interrupted by SIGINT or SIGTERM; the task's stop token asks `body` to end, a second
-/// signal kills. Whatever is not 0 comes with exactly one line `program: message` on stderr. Adds `--version`. Options
-/// of floating-point type refuse NaN and infinity. Signals stay blocked afterwards: call it from main, once.
+/// signal kills, and one that comes before `run` ends the program at once. Whatever is not 0 comes with exactly one
+/// line `program: message` on stderr. Adds `--version`. Options of floating-point type refuse NaN and infinity. Call it
+/// from main, once.
 int run(CLI::App& app, int argc, char** argv, const Options& options, const std::function<void(const Task&)>& body);
 
 }  // namespace outcrop::cli

@@ -273,6 +273,21 @@ class Failures(ProgramTest):
         self.assertEqual(process.returncode, 130, seen + rest)
         self.assertEqual(os.listdir(self.path("out")), [])
 
+    def test_interrupting_while_libraries_start_is_clean(self):
+        process = subprocess.Popen([AMPLIFY, "cliff.exr", "--resolution", "0.04", "-o", "out/a.ply"], cwd=self.folder,
+                                   stderr=subprocess.PIPE, text=True, env={**os.environ, "LD_DEBUG": "files"})
+        said = ""  # By the loader: the program's own handler stands before the libraries' constructors run.
+        while "calling preinit" not in said:
+            said = process.stderr.readline()
+            self.assertNotEqual(said, "", "the loader calls nothing before the libraries' constructors")
+        process.stderr.readline()
+        process.stderr.readline()
+        process.send_signal(signal.SIGINT)
+        _, rest = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 130, rest[-1000:])
+        self.assertIn("amplify: interrupted; no file was left in part\n", rest)
+        self.assertEqual(os.listdir(self.path("out")), [])
+
 
 def bounds_of_ply(path):
     with open(path, "rb") as file:
