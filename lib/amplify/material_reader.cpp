@@ -11,9 +11,15 @@ namespace outcrop {
 namespace {
 
 constexpr double kPatternSide = 20.0;          // Metres: a JointPattern gives its lengths for a tile of this side.
-constexpr double kSamplesPerSide = 27.4;       // About 14 500 samples a tile, as in Table 1 of Paris et al. 2020.
 constexpr double kFinestSpacing = 1.0 / 100;   // Of the side: some 700 000 samples.
-constexpr double kCoarsestSpacing = 1.0 / 4;   // Of the side: below, a sample would neighbour its own copies.
+constexpr double kCoarsestSpacing = 1.0 / 8;   // Of the side: above, a sample would neighbour its own copies.
+constexpr double kWidestCrack = 1.0 / 2;       // Of the spacing: wider, and nothing is left of a thin block.
+constexpr double kWidestDisc = 10.0;           // Of the side: a plane.
+constexpr double kWidestColumn = 1.0 / 5;      // Of the side; the thinnest is a sample wide.
+constexpr double kDeepest = 1.0 / 4;           // Of the side: rounding and reliefs.
+constexpr Bounds kAnyLength{0.0, 1000.0};      // Metres, where the side is not known yet.
+constexpr double kShortestPeriod = 1e-3;       // Metres.
+constexpr double kLeastRounding = 1e-6;        // Metres: what a block's field can tell from a sharp edge.
 constexpr double kApertureShare = 0.002;       // Of the side: 4 cm at 20 m.
 constexpr double kReliefPeriodShare = 0.2;     // Of the side: about a block.
 constexpr double kReliefAmplitudeShare = 0.006;  // Of the side: 12 cm at 20 m.
@@ -24,8 +30,17 @@ Vec3 plane_normal(double dip, double direction) {
   return {std::sin(dip) * std::sin(direction), std::sin(dip) * std::cos(direction), std::cos(dip)};
 }
 
-/// @param pattern_from_metres  Turns metres of this tile into the pattern's, those of a 20 m tile.
-JointSet read_joint_set(const Json& json, JointSet set, double pattern_from_metres) {
+/// 0, which stands for a default or for none, or a number within bounds.
+double zero_or_number(JsonReader& reader, std::string_view key, const Bounds& bounds) {
+  const double value = reader.number(key, 0.0, {0.0, bounds.hi});
+  return value == 0.0 ? value : reader.number(key, 0.0, bounds);
+}
+
+/// What rounding and reliefs may take away.
+double deepest(double side) { return side > 0.0 ? kDeepest * side : kAnyLength.hi; }
+
+/// Lengths in metres of this tile become the pattern's, those of a 20 m tile.
+JointSet read_joint_set(const Json& json, JointSet set, double side) {
   JsonReader reader(json);
   const bool turned = reader.has("dip_deg") || reader.has("dip_direction_deg");
   const double dip = reader.number("dip_deg", 0.0, {0.0, 90.0});
@@ -34,17 +49,18 @@ JointSet read_joint_set(const Json& json, JointSet set, double pattern_from_metr
   set.kappa = reader.number("kappa", set.kappa, kPositive);
   set.share = reader.number("share", set.share, kPositive);
   if (const Json* key = reader.child("radius")) {
-    const std::vector<double> radius = reader.numbers("radius", {}, 2, kPositive);
+    const Bounds bounds{.lo = 0.0, .hi = kWidestDisc * side, .open_lo = true};
+    const std::vector<double> radius = reader.numbers("radius", {}, 2, bounds);
     if (radius[0] > radius[1]) key->fail("\"radius\": the smallest before the largest");
-    set.radius_lo = radius[0] * pattern_from_metres;
-    set.radius_hi = radius[1] * pattern_from_metres;
+    set.radius_lo = radius[0] * kPatternSide / side;
+    set.radius_hi = radius[1] * kPatternSide / side;
   }
   reader.finish();
   return set;
 }
 
 /// The type's pattern with what the file says instead; nothing when it says nothing.
-std::optional<JointPattern> read_joints(JsonReader& reader, BlockType type, double pattern_from_metres) {
+std::optional<JointPattern> read_joints(JsonReader& reader, BlockType type, double side, double spacing) {
   bool given = false;
   for (const char* key : {"joint_sets", "discs", "irregular_share", "centre_spacing", "column_width"})
     given = reader.has(key) || given;  // Asks for every key, so that the reader knows them all.
@@ -55,15 +71,17 @@ std::optional<JointPattern> read_joints(JsonReader& reader, BlockType type, doub
     if (items.empty()) sets->fail("\"joint_sets\": at least one joint set", "none");
     std::vector<JointSet> own;
     for (std::size_t i = 0; i < items.size(); ++i)
-      own.push_back(read_joint_set(items[i], i < pattern.sets.size() ? pattern.sets[i] : JointSet{}, pattern_from_metres));
+      own.push_back(read_joint_set(items[i], i < pattern.sets.size() ? pattern.sets[i] : JointSet{}, side));
     pattern.sets = std::move(own);
   }
   pattern.discs = reader.integer("discs", pattern.discs, 0, 10'000);
   pattern.irregular_share = reader.number("irregular_share", pattern.irregular_share, {0.0, 1.0});
   if (reader.has("centre_spacing"))
-    pattern.centre_spacing = reader.number("centre_spacing", 0.0, {0.0, 1000.0}) * pattern_from_metres;
-  if (reader.has("column_width"))
-    pattern.column_width = reader.number("column_width", 0.0, {0.0, kPatternSide / pattern_from_metres / 5.0}) * pattern_from_metres;
+    pattern.centre_spacing = reader.number("centre_spacing", 0.0, kAnyLength) * kPatternSide / side;
+  if (reader.has("column_width")) {
+    const Bounds bounds{spacing, kWidestColumn * side};
+    pattern.column_width = zero_or_number(reader, "column_width", bounds) * kPatternSide / side;
+  }
   return pattern;
 }
 
@@ -74,15 +92,27 @@ bool has_joint_lengths(JsonReader& reader) {
   return std::any_of(sets.begin(), sets.end(), [](const Json& set) { return JsonReader(set).has("radius"); });
 }
 
-void read_lengths(JsonReader& reader, RockMaterial& material) {
-  const double side = material.tile_side;
+/// 0 when neither spacing nor side is known yet.
+double spacing_of(const RockMaterial& material, double side) {
+  return material.sample_spacing > 0.0 ? material.sample_spacing : side / kSpacingsPerSide;
+}
+
+/// @param side  0: not known yet.
+void read_lengths(JsonReader& reader, RockMaterial& material, double side) {
   const bool known = side > 0.0;
   const Bounds spacing = known ? Bounds{side * kFinestSpacing, side * kCoarsestSpacing} : kPositive;
   if (reader.has("sample_spacing")) material.sample_spacing = reader.number("sample_spacing", 0.0, spacing);
-  // A crack as wide as the samples lie apart would leave no rock between two joints.
-  const double widest = !known ? 1000.0 : material.sample_spacing > 0.0 ? material.sample_spacing : side / kSamplesPerSide;
-  material.aperture = reader.number("aperture", material.aperture, {0.0, widest});
-  material.rounding = reader.number("rounding", material.rounding, {0.0, known ? side / 4.0 : 1000.0});
+  const double widest = kWidestCrack * spacing_of(material, side);
+  material.aperture = reader.number("aperture", 0.0, widest > 0.0 ? Bounds{0.0, widest} : kAnyLength);
+  material.rounding = zero_or_number(reader, "rounding", {kLeastRounding, deepest(side)});
+}
+
+void read_relief_keys(const Json& json, RockMaterial& material, const std::filesystem::path& folder, double side) {
+  JsonReader reader(json);
+  if (const Json* image = reader.child("image")) material.relief = resolve_relief(*image, folder);
+  if (reader.has("period")) material.relief_period = reader.number("period", 0.0, {kShortestPeriod, kAnyLength.hi});
+  if (reader.has("amplitude")) material.relief_amplitude = reader.number("amplitude", 0.0, {0.0, deepest(side)});
+  reader.finish();
 }
 
 std::vector<std::string> known_reliefs() {
@@ -102,7 +132,7 @@ std::string listed(const std::vector<std::string>& names) {
 
 }  // namespace
 
-RockMaterial read_material(JsonReader& reader, const std::filesystem::path& folder) {
+RockMaterial read_material(JsonReader& reader, const std::filesystem::path& folder, double default_side) {
   RockMaterial material;
   material.name = reader.string("name", material.name);
   const std::vector<std::string_view> types = [] {
@@ -113,17 +143,12 @@ RockMaterial read_material(JsonReader& reader, const std::filesystem::path& fold
   material.block_type = kBlockTypes[reader.choice("block_type", 0, types)];
   material.tile_side = reader.has("tile_side") ? reader.number("tile_side", 0.0, {0.1, 1000.0}) : 0.0;
   if (material.tile_side == 0.0 && has_joint_lengths(reader)) material.tile_side = kPatternSide;
-  read_lengths(reader, material);
+  const double side = material.tile_side > 0.0 ? material.tile_side : default_side;
+  read_lengths(reader, material, side);
   material.min_block_samples = reader.integer("min_block_samples", material.min_block_samples, 1, 10'000);
-  const double side = material.tile_side > 0.0 ? material.tile_side : kPatternSide;
-  material.joints = read_joints(reader, material.block_type, kPatternSide / side);
-  if (const Json* json = reader.child("relief")) {
-    JsonReader relief(*json);
-    if (const Json* image = relief.child("image")) material.relief = resolve_relief(*image, folder);
-    if (relief.has("period")) material.relief_period = relief.number("period", 0.0, kPositive);
-    if (relief.has("amplitude")) material.relief_amplitude = relief.number("amplitude", 0.0, {0.0, side / 4.0});
-    relief.finish();
-  }
+  const double joint_side = side > 0.0 ? side : kPatternSide;
+  material.joints = read_joints(reader, material.block_type, joint_side, spacing_of(material, joint_side));
+  if (const Json* json = reader.child("relief")) read_relief_keys(*json, material, folder, side);
   const Vec3f& c = material.colour;
   const std::vector<double> colour = reader.numbers("colour", {c.r, c.g, c.b}, 3, {0.0, 1.0});
   if (reader.has("colour")) material.colour = Vec3f(colour[0], colour[1], colour[2]);

@@ -10,8 +10,12 @@ namespace outcrop {
 
 inline constexpr Bounds kPositive{.lo = 0.0, .open_lo = true};
 
-/// Reads a material's keys; the caller calls `finish()`. @param folder  Relative relief paths start here.
-[[nodiscard]] RockMaterial read_material(JsonReader& reader, const std::filesystem::path& folder);
+/// Reads a material's keys; the caller calls `finish()`. What it accepts makes a tile.
+///
+/// @param folder  Relative relief paths start here.
+/// @param default_side  Of the tile where the material names none, metres; 0: not known yet, so lengths are taken as
+/// they come.
+[[nodiscard]] RockMaterial read_material(JsonReader& reader, const std::filesystem::path& folder, double default_side);
 
 /// The image that a "relief" key means: the name of an installed relief, or a path relative to `folder`.
 [[nodiscard]] std::filesystem::path resolve_relief(const Json& image, const std::filesystem::path& folder);

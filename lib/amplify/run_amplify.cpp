@@ -68,15 +68,11 @@ Heightfield resampled(const Heightfield& heightfield, const Vec2& lo, const Vec2
 }
 
 /// Lengths of materials whose tile the terrain decides: only now can they be held against it.
-void check_lengths(const AmplifyRun& run, const StrataFile& strata, double side) {
-  constexpr double kFinest = 1.0 / 100, kCoarsest = 1.0 / 4;  // Sample spacings, of the side.
-  for (const RockMaterial& material : strata.materials) {
-    const double spacing = material.sample_spacing;
-    if (material.tile_side > 0.0 || spacing == 0.0) continue;
-    if (spacing >= side * kFinest && spacing <= side * kCoarsest) continue;
-    throw InputError(run.strata.string() + ": material \"" + material.name + "\": sample_spacing: expected " +
-                     number_text(side * kFinest) + " to " + number_text(side * kCoarsest) +
-                     ", the terrain makes tile_side " + number_text(side) + "; got " + number_text(spacing));
+void check_lengths(const Json& strata, const std::filesystem::path& folder, double side) {
+  try {
+    (void)read_strata(strata, folder, side);
+  } catch (const InputError& error) {
+    throw InputError(std::string(error.what()) + "; the terrain makes tile_side " + number_text(side));
   }
 }
 
@@ -212,12 +208,14 @@ class Runner {
 
   void read() {
     task_.begin("reading");
-    if (!run_.strata.empty()) report_.rock = read_strata(run_.strata);
+    const std::filesystem::path folder = run_.strata.parent_path();
+    const std::optional<Json> strata = run_.strata.empty() ? std::nullopt : std::optional(read_json(run_.strata));
+    if (strata) report_.rock = read_strata(*strata, folder);
     if (run_.nodata) report_.rock.nodata = *run_.nodata;
     HeightfieldFile file = read_heightfield(run_.heightmap, run_.heights);
     for (const std::string& line : file.notes) note(run_.heightmap.string() + ": " + line);
     report_.heightfield = make_heightfield(run_, std::move(file));
-    check_lengths(run_, report_.rock, default_tile_side(*report_.heightfield));
+    if (strata) check_lengths(*strata, folder, default_tile_side(*report_.heightfield));
     report_.seconds.reading = watch_.lap();
     task_.check();
   }

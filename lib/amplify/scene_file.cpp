@@ -226,7 +226,7 @@ FieldPtr read_label(JsonReader& reader, const Context& context) {
 FieldPtr read_tile(JsonReader& reader, const Context& context) {
   const double explode = reader.number("explode", 1.0, {1.0, 100.0});
   const int seed = reader.integer("seed", 1, 0, std::numeric_limits<int>::max());
-  const RockMaterial material = read_material(reader, context.folder);
+  const RockMaterial material = read_material(reader, context.folder, TileOptions{}.side);
   const TileOptions options = tile_options(material, TileOptions{}.side);
   const Tile tile = make_tile(options, static_cast<Seed>(seed), context.task);
   Warp warp;

@@ -11,7 +11,8 @@ namespace {
 
 constexpr int kVersion = 1;
 
-std::vector<RockMaterial> read_materials(JsonReader& reader, const std::filesystem::path& folder) {
+std::vector<RockMaterial> read_materials(JsonReader& reader, const std::filesystem::path& folder,
+                                         double default_side) {
   const Json* json = reader.child("materials");
   if (!json) return {RockMaterial{}};
   const std::vector<Json>& items = reader.array("materials");
@@ -19,7 +20,7 @@ std::vector<RockMaterial> read_materials(JsonReader& reader, const std::filesyst
   std::vector<RockMaterial> materials;
   for (const Json& item : items) {
     JsonReader material(item);
-    RockMaterial read = read_material(material, folder);
+    RockMaterial read = read_material(material, folder, default_side);
     material.finish();
     for (const RockMaterial& other : materials)
       if (other.name == read.name) item.fail("a material with a name of its own", "\"" + read.name + "\" for the second time");
@@ -83,14 +84,15 @@ Placement read_placement(const Json& json) {
 
 }  // namespace
 
-StrataFile read_strata(const std::filesystem::path& path) {
-  const Json json = read_json(path);
+StrataFile read_strata(const std::filesystem::path& path) { return read_strata(read_json(path), path.parent_path()); }
+
+StrataFile read_strata(const Json& json, const std::filesystem::path& folder, double default_side) {
   JsonReader reader(json);
   StrataFile file;
   (void)reader.string("$schema", "");
   (void)reader.string("description", "");
   (void)reader.integer("version", kVersion, kVersion, kVersion);
-  file.materials = read_materials(reader, path.parent_path());
+  file.materials = read_materials(reader, folder, default_side);
   if (const Json* strata = reader.child("strata")) read_strata_pile(*strata, file);
   if (const Json* placement = reader.child("placement")) file.placement = read_placement(*placement);
   const Vec3f& ground = file.ground_colour;

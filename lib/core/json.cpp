@@ -37,15 +37,23 @@ std::string in_quotes(std::string_view text) {
   return result + '"';
 }
 
+// Six digits of a bound that was computed: 0.739645 rather than 0.7396449704142012.
+std::string bound_text(double bound) {
+  const std::string exact = shortest(bound);
+  if (exact.size() <= 10) return exact;
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", bound);
+  return text;
+}
+
 std::string numbers_in(const Bounds& bounds, std::string_view what) {
-  const std::string name(what);
+  const std::string name(what), lo = bound_text(bounds.lo), hi = bound_text(bounds.hi);
   const bool below = std::isfinite(bounds.hi);
   if (std::isfinite(bounds.lo)) {
-    if (below)
-      return name + (bounds.open_lo ? " in (" : " in [") + shortest(bounds.lo) + ", " + shortest(bounds.hi) + "]";
-    return name + (bounds.open_lo ? " > " : " >= ") + shortest(bounds.lo);
+    if (below) return name + (bounds.open_lo ? " in (" : " in [") + lo + ", " + hi + "]";
+    return name + (bounds.open_lo ? " > " : " >= ") + lo;
   }
-  return below ? name + " <= " + shortest(bounds.hi) : name;
+  return below ? name + " <= " + hi : name;
 }
 
 bool within(double v, const Bounds& bounds) {

@@ -9,7 +9,12 @@
 #include "core/scratch.h"
 #include "outcrop/core/data_path.h"
 #include "outcrop/core/error.h"
+#include "outcrop/core/image.h"
 #include "outcrop/core/json.h"
+#include "outcrop/core/rng.h"
+#include "outcrop/fracture/tile.h"
+#include "outcrop/implicit/relief.h"
+#include "outcrop/implicit/rounded_polytope.h"
 
 namespace outcrop {
 namespace {
@@ -163,6 +168,67 @@ TEST_F(StrataFileTest, TheReaderKnowsEveryKeyOfTheSchema) {
   expect_known(member(kinds, "placement"), R"({"placement": {)", "}}");
 }
 
+/// Values at, near and far from every bound, in any combination: what passes the reader must not fail later.
+TEST_F(StrataFileTest, EveryMaterialThatIsAcceptedMakesATile) {
+  int accepted = 0;
+  for (std::uint64_t seed = 0; seed < 250; ++seed) {
+    Rng rng(seed, "materials");
+    const double side = std::pow(10.0, rng.uniform(-1.0, 3.0));
+    const bool named = rng.uniform() < 0.5;
+    std::string text = R"({"materials": [{"block_type": ")" + std::string(name(kBlockTypes[seed % std::size(kBlockTypes)])) + '"';
+    const auto put = [&](const char* key, double value) { text += ", \"" + std::string(key) + "\": " + std::to_string(value); };
+    const auto maybe = [&](const char* key, double lo, double hi) {
+      const double chance = rng.uniform();
+      const double value = lo * std::pow(hi / lo, rng.uniform());
+      if (chance < 0.6) put(key, chance < 0.1 ? lo : chance < 0.2 ? hi : value);
+    };
+    if (named) put("tile_side", side);
+    put("sample_spacing", side / rng.uniform(7.5, 12.0));
+    maybe("aperture", 1e-4 * side, 0.2 * side);
+    maybe("rounding", 1e-6, 0.26 * side);
+    maybe("irregular_share", 1e-3, 1.0);
+    if (named) maybe("centre_spacing", 1e-3 * side, side);  // Lengths of joints would fix the side at 20 m.
+    if (named) maybe("column_width", 0.06 * side, 0.21 * side);
+    if (named && rng.uniform() < 0.5) {
+      text += R"(, "joint_sets": [{"kappa": 30)";
+      const double lo = rng.uniform(0.01, 2.0) * side;
+      const double hi = lo * rng.uniform(1.0, 8.0);
+      text += ", \"radius\": [" + std::to_string(lo) + ", " + std::to_string(hi) + "]}]";
+    }
+    text += R"(, "relief": {"image": "rough")";
+    maybe("period", 1e-3, 10.0 * side);
+    maybe("amplitude", 1e-3 * side, 0.26 * side);
+    text += "}}]}";
+
+    RockMaterial material;
+    try {
+      material = read_strata(parse_json(text, "strata.json"), {}, named ? 0.0 : side).materials[0];
+    } catch (const InputError&) {
+      continue;
+    }
+    ++accepted;
+    const TileOptions options = tile_options(material, side);
+    const RockRelief measures = rock_relief(material, options.side);
+    const Image image{.width = 2, .height = 1, .channels = 1, .pixels = {0, 1}};
+    const auto relief = std::make_shared<Relief>(image, measures.period);
+    try {
+      for (const Block& block : make_tile(options, seed).blocks)
+        (void)PolytopeKernel(block.planes, block.rounding, {relief, measures.amplitude}, block.centre);
+    } catch (const std::exception& error) {
+      ADD_FAILURE() << text << "\n" << error.what();
+    }
+  }
+  EXPECT_GT(accepted, 100);
+}
+
+TEST_F(StrataFileTest, LengthsAreHeldAgainstTheTileThatTheTerrainMakes) {
+  const Json json = parse_json("{\"materials\": [{},\n  {\"name\": \"slate\", \"aperture\": 0.3}]}", "strata.json");
+  EXPECT_EQ(read_strata(json, {}).materials[1].aperture, 0.3);
+  EXPECT_EQ(read_strata(json, {}, 20.0).materials[1].tile_side, 0.0);
+  const std::string error = test::message_of<InputError>([&] { (void)read_strata(json, {}, 5.0); });
+  EXPECT_EQ(error, "strata.json:2:21: \"aperture\": expected a number in [0, 0.0924556], got 0.3");
+}
+
 TEST_F(StrataFileTest, MistakesAreNamedWithTheirPlace) {
   struct Mistake {
     const char* text;
@@ -180,6 +246,13 @@ TEST_F(StrataFileTest, MistakesAreNamedWithTheirPlace) {
       {"{\"materials\": [{\"block_type\": \"tabula\"}]}", {"block_type", "tabular"}},
       {"{\"materials\": [{\"tile_side\": -1}]}", {"tile_side", "-1"}},
       {"{\"materials\": [{\"tile_side\": 10, \"sample_spacing\": 0.001}]}", {"sample_spacing", "0.1", "0.001"}},
+      {"{\"materials\": [{\"tile_side\": 10, \"sample_spacing\": 2}]}", {":1:34:", "sample_spacing", "1.25", "2"}},
+      {"{\"materials\": [{\"sample_spacing\": 0.5,\n\"aperture\": 0.5}]}", {":2:1:", "aperture", "[0, 0.25]", "0.5"}},
+      {"{\"materials\": [{\"tile_side\": 20, \"aperture\": 1}]}", {"aperture", "[0, 0.369822]", "1"}},
+      {"{\"materials\": [{\"rounding\": 1e-9}]}", {"rounding", "1e-06"}},
+      {"{\"materials\": [{\"tile_side\": 10, \"column_width\": 0.05}]}", {"column_width", "[0.369822, 2]", "0.05"}},
+      {"{\"materials\": [{\"tile_side\": 10, \"relief\": {\"amplitude\": 3}}]}", {"amplitude", "2.5", "3"}},
+      {"{\"materials\": [{\"joint_sets\": [{\"radius\": [1, 300]}]}]}", {"radius", "200", "300"}},
       {"{\"materials\": [{\"joint_sets\": [{\"radius\": [4, 1]}]}]}", {"radius"}},
       {"{\"materials\": [{\"relief\": {\"image\": \"ruff\"}}]}", {":1:28:", "relief", "ruff", "rough"}},
       {"{\"materials\": [{\"relief\": {\"image\": \"gone/x.png\"}}]}", {":1:28:", "relief", "gone/x.png"}},

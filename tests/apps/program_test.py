@@ -207,8 +207,9 @@ class BadOptions(ProgramTest):
                                          "--camera", "1", "2", "3", "1", "2", "3"), "camera", "target")
 
     def test_a_spacing_that_the_terrain_makes_too_fine_names_file_and_material(self):
-        self.assert_strata_refused('{"materials": [{"name": "slate", "sample_spacing": 0.001}]}', "slate", "sample_spacing",
-                                   "0.001")
+        self.assert_strata_refused('{"materials": [{"name": "slate", "sample_spacing": 0.001}]}', "bad.json:1:34", "sample_spacing",
+                                   "0.001", "the terrain makes tile_side 11.75")
+        self.assert_strata_refused('{"materials": [{"aperture": 0.5}]}', "bad.json:1:17", "aperture", "0.217", "tile_side")
 
     def test_help_and_version(self):
         for program in (AMPLIFY, POLYGONIZE):

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "outcrop/core/json.h"
 #include "outcrop/core/vec.h"
 #include "outcrop/fracture/tile.h"
 #include "outcrop/terrain/heightfield.h"
@@ -19,7 +20,7 @@ struct RockMaterial {
   BlockType block_type = BlockType::Equidimensional;
   std::optional<JointPattern> joints;  ///< Replaces the type's own pattern.
   double tile_side = 0.0;              ///< Metres; 0: 20 m, or smaller on terrains too small for that.
-  double sample_spacing = 0.0;         ///< Metres; 0: tile_side / 27.4.
+  double sample_spacing = 0.0;         ///< Metres; 0: tile_side / kSpacingsPerSide.
   double aperture = 0.0;               ///< Metres; 0: 0.002 · tile_side.
   double rounding = 0.0;               ///< Metres; 0: 0.0125 · tile_side (25 cm at 20 m, as in the paper).
   int min_block_samples = 12;
@@ -53,6 +54,11 @@ struct StrataFile {
 /// Reads and checks a strata.json; relief paths in it are relative to the file, else names of installed reliefs.
 /// @throws InputError with file, line and column.
 [[nodiscard]] StrataFile read_strata(const std::filesystem::path& path);
+
+/// The same of a file that is parsed already. @param folder  Relative relief paths start here.
+/// @param default_side  The tile's side where a material names none, metres, once the terrain is known: lengths that do
+/// not fit it are refused. 0: not known yet, so they are taken as they come.
+[[nodiscard]] StrataFile read_strata(const Json& json, const std::filesystem::path& folder, double default_side = 0.0);
 
 /// What make_tile needs for a material, its zeros replaced by their defaults; `default_side` where it names no tile side.
 [[nodiscard]] TileOptions tile_options(const RockMaterial& material, double default_side);
