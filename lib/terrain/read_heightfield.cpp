@@ -111,18 +111,25 @@ struct MapFromRaster {
   double a, b, x0, c, d, y0;
 };
 
-std::optional<MapFromRaster> map_from_raster(const GeotiffTags& tags) {
-  const auto& m = tags.transformation;
-  if (m.size() >= 8) return MapFromRaster{m[0], m[1], m[3], m[4], m[5], m[7]};
+/// Scale and tie point win over a matrix, and a negative vertical scale is taken for a slip: so do GDAL and all that is
+/// built on it, against the standard, and files are made to look right there.
+std::optional<MapFromRaster> map_from_raster(const GeotiffTags& tags, Notes& notes) {
   const auto& s = tags.pixel_scale;
   const auto& t = tags.tie_points;
-  if (s.size() < 2 || t.size() < 6) return std::nullopt;
-  return MapFromRaster{s[0], 0.0, t[3] - t[0] * s[0], 0.0, -s[1], t[4] + t[1] * s[1]};
+  const auto& m = tags.transformation;
+  if (s.size() >= 2 && s[0] != 0.0 && s[1] != 0.0 && t.size() >= 6) {
+    if (s[1] < 0.0) notes.emplace_back("the vertical pixel scale is negative: taken as north up, as GDAL does");
+    const double down = std::abs(s[1]);
+    return MapFromRaster{s[0], 0.0, t[3] - t[0] * s[0], 0.0, -down, t[4] + t[1] * down};
+  }
+  if (m.size() == 16) return MapFromRaster{m[0], m[1], m[3], m[4], m[5], m[7]};
+  return std::nullopt;
 }
 
 /// Gives the grid its place and its cell size by the tags, north up. False when they say nothing of use.
-bool place(ElevationGrid& grid, const GeotiffTags& tags, Notes& notes) {
-  const std::optional<MapFromRaster> found = map_from_raster(tags);
+/// @throws InputError for a raster that lies askew.
+bool place(ElevationGrid& grid, const GeotiffTags& tags, const std::filesystem::path& path, Notes& notes) {
+  const std::optional<MapFromRaster> found = map_from_raster(tags, notes);
   if (!found) {
     const auto& s = tags.pixel_scale;
     if (s.size() < 2 || !(s[0] > 0.0 && s[1] > 0.0)) return false;
@@ -135,12 +142,10 @@ bool place(ElevationGrid& grid, const GeotiffTags& tags, Notes& notes) {
   if (!std::isfinite(cell.x) || !std::isfinite(cell.y) || cell.x <= 0.0 || cell.y <= 0.0) return false;
   if (!std::isfinite(map.x0) || !std::isfinite(map.y0)) return false;
   if (std::abs(map.b) + std::abs(map.c) > 1e-6 * std::min(cell.x, cell.y)) {
-    notes.push_back(
-        format("the raster is turned by %.4g degrees in its map: read as if it were north up, without its place",
-               degrees(std::atan2(map.c, map.a))));
-    grid.cell_x = cell.x;
-    grid.cell_y = cell.y;
-    return true;
+    fail(path, "a raster along its map's axes",
+         format("rows that run %.4g degrees from the map's x axis, columns %.4g from its y axis; gdalwarp makes one that "
+                "lies straight",
+                degrees(std::atan2(map.c, map.a)), degrees(std::atan2(-map.b, -map.d))));
   }
   if (map.a < 0.0) mirror_columns(grid);
   if (map.d > 0.0) mirror_rows(grid);
@@ -212,7 +217,7 @@ HeightfieldFile read_raster(const std::filesystem::path& path, bool cell_given) 
 
   const GeotiffTags tags = terrain::read_geotiff_tags(path).value_or(GeotiffTags{});
   mark_nodata(grid.elevations, tags.nodata ? parsed_nodata(*tags.nodata, file.notes) : std::nullopt, file.notes);
-  if (!place(grid, tags, file.notes) && !cell_given) file.notes.emplace_back("no cell size in the file: took 1 m");
+  if (!place(grid, tags, path, file.notes) && !cell_given) file.notes.emplace_back("no cell size in the file: took 1 m");
   const double unit = metres_per_unit(tags.vertical_unit, "elevations", file.notes);
   if (unit != 1.0) {
     for (float& h : grid.elevations) h = static_cast<float>(h * unit);

@@ -212,12 +212,49 @@ TEST_F(ReadHeightfield, SouthUpAndMirroredRastersAreTurned) {
   EXPECT_EQ(grid.origin, Vec2(1000.0 - 12.5, 2002.0));
 }
 
-TEST_F(ReadHeightfield, TurnedRastersKeepTheirCellAndLoseTheirPlace) {
-  write_geotiff(file("h.tif"), 3, 2, kSamples, {.transformation = {3, 4, 0, 10, 4, -3, 0, 20, 0, 0, 0, 0, 0, 0, 0, 1}});
+TEST_F(ReadHeightfield, TurnedAndSkewedRastersAreRefused) {
+  const auto refused = [&](double a, double b, double c, double d) {
+    write_geotiff(file("h.tif"), 3, 2, kSamples, {.transformation = {a, b, 0, 10, c, d, 0, 20, 0, 0, 0, 0, 0, 0, 0, 1}});
+    return refusal(file("h.tif"));
+  };
+  EXPECT_EQ(refused(3, 4, 4, -3), file("h.tif").string() +
+                                      ": expected a raster along its map's axes, got rows that run 53.13 degrees from the "
+                                      "map's x axis, columns -53.13 from its y axis; gdalwarp makes one that lies straight");
+  refused(5, 1, 0, -5);
+  refused(0, 5, -5, 0);
+}
+
+// The numbers from here to the matrix are those of GDAL 3.10 on the same tags.
+TEST_F(ReadHeightfield, ANegativeVerticalScaleMeansNorthUpAsInGdal) {
+  write_geotiff(file("h.tif"), 3, 2, kSamples, {.scale = {5, -4, 0}, .tie_point = {0, 0, 0, 1000, 2000, 0}});
   const HeightfieldFile read = read_heightfield(file("h.tif"));
-  EXPECT_DOUBLE_EQ(read.grid.cell_x, 5.0);
-  EXPECT_FALSE(read.grid.georeferenced);
-  EXPECT_TRUE(has_note(read, "turned"));
+  EXPECT_EQ(read.grid.elevations, kSamples);
+  EXPECT_EQ(read.grid.origin, Vec2(1002.5, 1994.0));
+  EXPECT_EQ(read.grid.cell_y, 4.0);
+  EXPECT_TRUE(has_note(read, "negative"));
+}
+
+TEST_F(ReadHeightfield, TiePointsMayStandAnywhereInTheRaster) {
+  for (const std::uint16_t kind : {1, 2}) {
+    Tags tags{.scale = {5, 4, 0}, .tie_point = {1.5, 2.5, 0, 1000, 2000, 0}, .keys = {kModelType, 1, kRasterType, kind}};
+    write_geotiff(file("h.tif"), 3, 2, kSamples, tags);
+    const double half = kind == 1 ? 0.5 : 0.0;
+    EXPECT_EQ(read_heightfield(file("h.tif")).grid.origin, Vec2(1000 + (half - 1.5) * 5, 2000 + (2.5 - half - 1) * 4));
+    // A second tie point changes nothing.
+    tags.tie_point.insert(tags.tie_point.end(), {2, 2, 0, 7, 7, 7});
+    write_geotiff(file("two.tif"), 3, 2, kSamples, tags);
+    EXPECT_EQ(read_heightfield(file("two.tif")).grid.origin, read_heightfield(file("h.tif")).grid.origin);
+  }
+}
+
+TEST_F(ReadHeightfield, TheMatrixOfAPixelThatIsAPointGivesItsCentre) {
+  const std::vector<double> matrix{5, 0, 0, 1000, 0, -4, 0, 2000, 0, 0, 0, 0, 0, 0, 0, 1};
+  write_geotiff(file("h.tif"), 3, 2, kSamples, {.transformation = matrix, .keys = {kModelType, 1, kRasterType, 2}});
+  EXPECT_EQ(read_heightfield(file("h.tif")).grid.origin, Vec2(1000, 1996));
+  // Where both stand, scale and tie point count.
+  write_geotiff(file("both.tif"), 3, 2, kSamples,
+                {.scale = {2, 2, 0}, .tie_point = {0, 0, 0, 10, 20, 0}, .transformation = matrix});
+  EXPECT_EQ(read_heightfield(file("both.tif")).grid.origin, Vec2(11, 17));
 }
 
 TEST_F(ReadHeightfield, DegreesBecomeMetresAtTheMiddleLatitude) {

@@ -25,8 +25,9 @@ struct HeightfieldFile {
 
 /// Reads elevations in the file's own units (a 16-bit PNG sample of 1200 is 1200 m before scale and offset).
 ///
-/// GeoTIFF: cell size, origin and nodata from tags 33550, 33922, 34264 and 42113; rasters that lie south up or mirrored
-/// are turned; feet become metres. Geographic rasters (degrees) get metres a degree at the raster's middle latitude,
+/// GeoTIFF: cell size, origin and nodata from tags 33550, 33922, 34264 and 42113, read as GDAL reads them: scale and
+/// the first tie point win over the matrix, a negative vertical scale means north up all the same. Rasters whose matrix
+/// lies south up or mirrored are turned; askew ones are refused; feet become metres. Geographic rasters (degrees) get metres a degree at the raster's middle latitude,
 /// and their origin is longitude and latitude times those. SRTM .hgt: big-endian 16-bit, -32768 is nodata, the name
 /// gives the corner. Without tags the cell is 1 m and the origin (0, 0). No data, besides NaN and the tag's value:
 /// -9999, -32768, infinity and what lies beyond ±1e30.
