@@ -29,7 +29,9 @@ Scene read_input(const PolygonizeRun& run, const Task& task) {
   if (extension == ".vdb") {
     scene.field = read_vdb(run.input, task);
   } else if (extension == ".ply" || extension == ".obj" || extension == ".stl") {
-    scene.field = mesh_field(run.input, run.resolution.value_or(0.0), task);
+    MeshField mesh = mesh_field(run.input, run.resolution.value_or(0.0), task);
+    scene.field = std::move(mesh.field);
+    if (!mesh.note.empty()) scene.notes.push_back(std::move(mesh.note));
   } else {
     const std::string got = extension.empty() ? "a name without extension" : extension;
     throw InputError(run.input.string() + ": expected a scene (.json), a grid (.vdb) or a mesh (.ply, .obj, .stl), got " + got);
@@ -93,14 +95,21 @@ std::string run_polygonize(const PolygonizeRun& run, const Notify& notify, const
   task.begin("reading");
   const Scene scene = read_input(run, task);
   const PolygonizeOptions options = mesh_options(run, scene);
+  // Once the input has been found usable: a refusal is one line and stands alone.
+  const auto accepted = [&] {
+    for (const std::string& note : scene.notes)
+      if (notify) notify(note);
+  };
   if (run.dry_run) {
     const PolygonizeEstimate estimate = estimate_polygonize(*scene.field, options, task);
+    accepted();
     return "resolution " + number_text(options.resolution) + " m\ncells      " + count_text(double(estimate.cells)) +
            "\ntriangles  " + count_text(double(estimate.triangles)) + "\nmemory     " + byte_text(double(estimate.bytes)) +
            "\n";
   }
   if (!run.meshes.empty()) {
     const TriangleMesh mesh = rebased(polygonize(*scene.field, options, task).mesh, Vec3(0.0));
+    accepted();
     if (mesh.triangles.empty() && notify)
       notify("cells of " + number_text(options.resolution) + " m find no surface in the region: the mesh is empty");
     const MeshMetadata metadata{{"outcrop " + std::string(version()) + " polygonize " + run.input.filename().string(),
@@ -126,6 +135,7 @@ std::string run_polygonize(const PolygonizeRun& run, const Notify& notify, const
       }
     }
   }
+  if (run.meshes.empty()) accepted();
   if (!run.previews.empty()) {
     const Preview picture = preview(run, scene, options, task);
     for (const auto& path : run.previews) {

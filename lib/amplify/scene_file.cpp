@@ -14,8 +14,6 @@
 #include "outcrop/implicit/combine.h"
 #include "outcrop/implicit/grid_field.h"
 #include "outcrop/implicit/primitives.h"
-#include "outcrop/mesh/triangle_mesh.h"
-#include "outcrop/mesh/write_mesh.h"
 #include "outcrop/terrain/read_heightfield.h"
 #include "outcrop/terrain/terrain_field.h"
 
@@ -23,7 +21,6 @@ namespace outcrop {
 namespace {
 
 constexpr double kRegionMargin = 0.02;  // Of the support's longest side: air around the solid, so that it closes.
-constexpr double kMeshBand = 4.0;       // Voxels of exact distance on either side of a mesh.
 constexpr double kUniverse = 16384.0;   // Metres to each side: where a solid of unknown extent is sought.
 constexpr double kSearchCells = 32.0;   // Across the solid, when it is found.
 constexpr std::size_t kSearchBoxes = 1 << 15;
@@ -34,6 +31,7 @@ struct Context {
   std::filesystem::path folder;
   std::vector<std::string> materials;
   Task task;
+  std::vector<std::string>& notes;  ///< Of the files that the scene names.
 };
 
 FieldPtr read_node(const Json& json, const Context& context);
@@ -202,14 +200,18 @@ FieldPtr read_terrain(JsonReader& reader, const Context& context) {
   options.height_offset = reader.number("height_offset", 0.0, kFinite);
   const bool bilinear = reader.boolean("bilinear", false);
   const bool fill = reader.choice("nodata", 0, {"hole", "fill"}) == 1;
-  HeightfieldFile read = read_heightfield(file(reader, context), options);
+  const std::filesystem::path path = file(reader, context);
+  HeightfieldFile read = read_heightfield(path, options);
+  for (const std::string& note : read.notes) context.notes.push_back(path.string() + ": " + note);
   Heightfield heightfield(std::move(read.grid), bilinear ? Interpolation::Bilinear : Interpolation::Smooth);
   return std::make_shared<TerrainField>(std::move(heightfield), fill ? NodataPolicy::Fill : NodataPolicy::Hole);
 }
 
 FieldPtr read_mesh_node(JsonReader& reader, const Context& context) {
   const double voxel = reader.has("voxel") ? reader.number("voxel", 1.0, kLength) : 0.0;
-  return mesh_field(file(reader, context), voxel, context.task);
+  MeshField mesh = mesh_field(file(reader, context), voxel, context.task);
+  if (!mesh.note.empty()) context.notes.push_back(mesh.note);
+  return mesh.field;
 }
 
 FieldPtr read_vdb_node(JsonReader& reader, const Context& context) { return read_vdb(file(reader, context), context.task); }
@@ -376,20 +378,6 @@ std::optional<Box> default_region(const Field& field) {
   return support->grown(kRegionMargin * longest);
 }
 
-FieldPtr mesh_field(const std::filesystem::path& path, double voxel, const Task& task) {
-  const TriangleMesh mesh = read_mesh(path);
-  std::vector<Vec3> vertices;
-  vertices.reserve(mesh.positions.size());
-  for (const Vec3f& p : mesh.positions) vertices.push_back(mesh.origin + Vec3(p));
-  const Vec3 size = mesh.bounds().size();
-  if (voxel <= 0.0) voxel = std::max({size.x, size.y, size.z}) / kDefaultCells;
-  try {
-    return mesh_distance(vertices, mesh.triangles, voxel, kMeshBand, task);
-  } catch (const ParameterError& error) {
-    throw InputError(path.string() + ": " + error.what());
-  }
-}
-
 Scene read_scene(const std::filesystem::path& path, const Task& task) {
   const Json json = read_json(path);
   JsonReader reader(json);
@@ -403,7 +391,7 @@ Scene read_scene(const std::filesystem::path& path, const Task& task) {
   const Json* field = reader.child("field");
   reader.finish();  // Before the field: a misspelt key is told at once, not after minutes of reading files.
   if (!field) json.fail("a scene with the key \"field\"", "one without");
-  scene.field = read_node(*field, {path.parent_path(), scene.label_names, task});
+  scene.field = read_node(*field, {path.parent_path(), scene.label_names, task, scene.notes});
   if (!scene.region) scene.region = default_region(*scene.field);
   if (scene.label_names.empty()) {
     scene.label_names = {RockMaterial{}.name};

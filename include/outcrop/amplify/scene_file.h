@@ -18,6 +18,7 @@ struct Scene {
   std::optional<double> resolution;        ///< Metres, when the file names one.
   std::vector<std::string> label_names;    ///< Label → name, in the order of "materials"; at least one.
   std::vector<Vec3f> label_colours;        ///< Linear albedo, one a name.
+  std::vector<std::string> notes;          ///< What had to be assumed about the files that it names, one line each.
 };
 
 /// Reads `{"version": 1, "field": {<kind>: {…}}, "region": …, "resolution": …, "materials": […]}`.
@@ -28,9 +29,18 @@ struct Scene {
 
 inline constexpr double kDefaultCells = 128;  ///< Cells along the longest side where nobody names a resolution.
 
+/// A mesh as a field.
+struct MeshField {
+  FieldPtr field;
+  std::string note;  ///< One line where the mesh is open, else empty.
+};
+
 /// The signed distance to the closed mesh in a .ply, .obj or .stl file; voxel 0: its longest side / 128.
-/// @throws InputError.
-[[nodiscard]] FieldPtr mesh_field(const std::filesystem::path& path, double voxel = 0.0, const Task& task = {});
+///
+/// Inside is what cannot be reached from outside, so gaps narrower than a voxel do no harm; vertices at one place count
+/// as one, and it does not matter which way triangles turn.
+/// @throws InputError also for an open mesh that encloses nothing.
+[[nodiscard]] MeshField mesh_field(const std::filesystem::path& path, double voxel = 0.0, const Task& task = {});
 
 /// The region in which a field is meshed when nobody names one: its support, or else the box that its bounds leave
 /// within 16 km of the origin, grown by 2 %. Nothing for solids without end.
