@@ -1,6 +1,7 @@
 #include "clip_mesh.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <unordered_map>
@@ -12,6 +13,7 @@ namespace outcrop {
 namespace {
 
 constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
+constexpr double kOnSide = 1e-3;   // Of a cell: the surface keeps 0.02 away from the lattice's nodes.
 constexpr double kNearest = 0.02;  // Of an edge: cuts keep away from its ends, so that no sliver appears.
 
 std::vector<double> values_at_vertices(const TriangleMesh& mesh, const Field& field) {
@@ -80,7 +82,54 @@ class Clipper {
   TriangleMesh result_;
 };
 
+/// The sides of a region that a point lies on, a bit each.
+class Sides {
+ public:
+  Sides(const Box& region, double resolution) : slack_(kOnSide * resolution) {
+    const Vec3 size = region.size();
+    // The region's far end is moved out to whole cells.
+    for (int axis = 0; axis < 3; ++axis) far_[axis] = resolution * std::ceil(size[axis] / resolution - kOnSide);
+  }
+
+  /// @param p  Relative to the region's lower corner.
+  [[nodiscard]] unsigned operator()(const Vec3f& p) const {
+    unsigned sides = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (p[axis] < slack_) sides |= 1u << (2 * axis);
+      if (p[axis] > far_[axis] - slack_) sides |= 2u << (2 * axis);
+    }
+    return sides;
+  }
+
+ private:
+  double slack_;
+  Vec3 far_{0.0};
+};
+
 }  // namespace
+
+TriangleMesh without_walls(const TriangleMesh& mesh, const Box& region, double resolution) {
+  const Sides sides(region, resolution);
+  std::vector<std::uint32_t> kept(mesh.positions.size(), kUnused);
+  TriangleMesh result;
+  result.origin = mesh.origin;
+  for (const auto& t : mesh.triangles) {
+    const auto& p = mesh.positions;
+    if ((sides(p[t[0]]) & sides(p[t[1]]) & sides(p[t[2]])) != 0) continue;
+    result.triangles.push_back(t);
+    for (const std::uint32_t v : t) kept[v] = 0;
+  }
+  for (std::size_t v = 0; v < kept.size(); ++v) {
+    if (kept[v] == kUnused) continue;
+    kept[v] = static_cast<std::uint32_t>(result.positions.size());
+    result.positions.push_back(mesh.positions[v]);
+    if (!mesh.normals.empty()) result.normals.push_back(mesh.normals[v]);
+    if (!mesh.labels.empty()) result.labels.push_back(mesh.labels[v]);
+  }
+  for (auto& t : result.triangles)
+    for (std::uint32_t& v : t) v = kept[v];
+  return result;
+}
 
 TriangleMesh clip_mesh(const TriangleMesh& mesh, const Field& field) {
   return Clipper(mesh, values_at_vertices(mesh, field))();

@@ -10,4 +10,9 @@ namespace outcrop {
 /// Neighbours share the cut's vertices. Vertices that nobody uses any more are left out. Cost: linear.
 [[nodiscard]] TriangleMesh clip_mesh(const TriangleMesh& mesh, const Field& field);
 
+/// A mesh that polygonize() made with Border::Closed without the walls at the region's border: what it makes with
+/// Border::Open, to the byte.
+/// @param region, resolution  Those that the mesh was made with; its origin is still the region's lower corner.
+[[nodiscard]] TriangleMesh without_walls(const TriangleMesh& mesh, const Box& region, double resolution);
+
 }  // namespace outcrop

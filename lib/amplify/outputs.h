@@ -11,7 +11,8 @@
 
 namespace outcrop {
 
-inline constexpr double kVdbBand = 3.0;  ///< Voxels of a level set on either side of the surface.
+inline constexpr double kVdbBand = 3.0;               ///< Voxels of a level set on either side of the surface.
+inline constexpr double kLevelSetBytesACell = 250.0;  ///< Of memory, a cell of the surface; 232 to 267 measured.
 
 /// Where a run wants to write.
 struct Outputs {

@@ -26,6 +26,7 @@ constexpr double kLeastBytesACell = 60.0;     // Two triangles and their share o
 // What one core does, measured on the canyon of the demo; for --dry-run only.
 constexpr double kTrianglesASecond = 100e3;
 constexpr double kPreviewPixelsASecond = 2e3;
+constexpr double kLevelSetCellsASecond = 100e3;  // 77 to 118 thousand at 0.15 to 0.4 m; cells of the closed surface.
 
 /// A sensible line for files: what was made from what, without paths or thread counts, so that runs compare to the byte.
 std::vector<std::string> comments(const AmplifyReport& report, const Vec2& origin) {
@@ -114,20 +115,31 @@ std::size_t block_count(const Amplified& amplified) {
   return blocks;
 }
 
-/// Bytes that a mesh file of so many triangles takes; a closed surface has half as many vertices.
-double file_bytes(const std::filesystem::path& path, double triangles) {
+/// What a run has to mesh.
+struct Expectation {
+  PolygonizeEstimate mesh;
+  std::size_t meshings = 0;      ///< Twice where a sheet is cut and a level set needs the solid.
+  double level_set_cells = 0.0;  ///< Of the closed surface, walls and floor included; 0 without a level set.
+};
+
+/// Bytes that a mesh file takes; a closed surface has half as many vertices as triangles.
+double file_bytes(const std::filesystem::path& path, const Expectation& expected) {
+  const auto triangles = static_cast<double>(expected.mesh.triangles);
   const std::string extension = path.extension().string();
   if (extension == ".stl") return 84.0 + 50.0 * triangles;
   if (extension == ".obj") return 75.0 * triangles;
-  if (extension == ".vdb") return 30.0 * triangles;
+  if (extension == ".vdb") return 12.0 * expected.level_set_cells;
   return 27.0 * triangles;  // PLY: 13 a face, 28 a vertex.
 }
 
-std::string dry_run_text(const AmplifyRun& run, const AmplifyReport& report, const PolygonizeEstimate& estimate) {
+std::string dry_run_text(const AmplifyRun& run, const AmplifyReport& report, const Expectation& expected) {
   const Amplified& amplified = report.amplified;
   const AmplifyOptions& options = report.options;
-  const double triangles = static_cast<double>(estimate.triangles);
-  const double mesh_seconds = run.meshes.empty() ? 0.0 : triangles / kTrianglesASecond;
+  const double triangles = static_cast<double>(expected.mesh.triangles);
+  const double mesh_seconds = static_cast<double>(expected.meshings) * triangles / kTrianglesASecond +
+                              expected.level_set_cells / kLevelSetCellsASecond;
+  const double bytes = static_cast<double>(peak_memory() + expected.mesh.bytes) +
+                       kLevelSetBytesACell * expected.level_set_cells;
   const double pixels = run.previews.empty() ? 0.0 : double(run.width) * run.height;
   const double seconds = (mesh_seconds + pixels / kPreviewPixelsASecond) / report.threads + report.seconds.reading +
                          amplified.tile_seconds + amplified.placement_seconds;
@@ -135,11 +147,11 @@ std::string dry_run_text(const AmplifyRun& run, const AmplifyReport& report, con
   std::string text = "region     " + number_text(extent.x) + " m x " + number_text(extent.y) + " m at " +
                      number_text(options.resolution) + " m\n";
   text += "blocks     " + count_text(double(block_count(amplified))) + "\n";
-  text += "cells      " + count_text(double(estimate.cells)) + "\n";
+  text += "cells      " + count_text(double(expected.mesh.cells)) + "\n";
   text += "triangles  " + count_text(triangles) + "\n";
   text += "seconds    " + number_text(std::ceil(seconds), 6) + " on " + std::to_string(report.threads) + " threads\n";
-  text += "memory     " + byte_text(double(estimate.bytes)) + ", limit " + byte_text(double(report.memory_limit)) + "\n";
-  for (const auto& path : run.meshes) text += path.string() + "  " + byte_text(file_bytes(path, triangles)) + "\n";
+  text += "memory     " + byte_text(bytes) + ", limit of the mesh " + byte_text(double(report.memory_limit)) + "\n";
+  for (const auto& path : run.meshes) text += path.string() + "  " + byte_text(file_bytes(path, expected)) + "\n";
   for (const auto& path : run.previews)
     text += path.string() + "  " + byte_text(pixels * (path.extension() == ".png" ? 1.8 : 28.0)) + "\n";
   return text;
@@ -154,7 +166,7 @@ class Runner {
     prepare();
     read();
     compose();
-    if (run_.dry_run) return dry_run_text(run_, report_, estimate_polygonize(*amplified().field, mesh_options(), task_));
+    if (run_.dry_run) return dry_run_text(run_, report_, expectation());
     if (!run_.meshes.empty()) mesh();
     if (!run_.previews.empty()) preview();
     if (!run_.report.empty()) write_report();
@@ -254,17 +266,35 @@ class Runner {
             .memory_limit = report_.memory_limit};
   }
 
+  /// A sheet has no walls: it is cut where data are missing. A solid gets walls there, as at the region's border.
+  [[nodiscard]] bool is_cut() const { return amplified().hole && !run_.solid; }
+
+  [[nodiscard]] Expectation expectation() const {
+    const bool sheet = wants_triangles({run_.meshes, {}, {}}), level_set = wants_level_set({run_.meshes, {}, {}});
+    const Field& field = is_cut() && !level_set ? *amplified().ground : *amplified().field;
+    Expectation expected{.mesh = estimate_polygonize(field, mesh_options(), task_)};
+    expected.meshings = is_cut() ? std::size_t{sheet} + level_set : std::size_t{sheet || level_set};
+    const Vec3 cells = amplified().region.size() / report_.options.resolution;
+    if (level_set)
+      expected.level_set_cells = double(expected.mesh.cells) + cells.x * cells.y + (cells.x + cells.y) * cells.z;
+    return expected;
+  }
+
   void mesh() {
     const Vec3 origin(report_.heightfield->lo(), 0.0);
-    TriangleMesh mesh;
+    const bool level_set = wants_level_set({run_.meshes, {}, {}});
+    TriangleMesh solid;
     if (wants_triangles({run_.meshes, {}, {}})) {
-      // A sheet has no walls: it is cut where data are missing. A solid gets walls there, as at the region's border.
-      const bool cut = amplified().hole && !run_.solid;
-      PolygonizeResult made = polygonize(cut ? *amplified().ground : *amplified().field, mesh_options(), task_);
-      if (cut) made.mesh = clip_mesh(made.mesh, *amplified().hole);
+      PolygonizeOptions options = mesh_options();
+      const bool shared = level_set && !is_cut();  // One mesh for both: a sheet is the solid without its walls.
+      if (shared) options.border = Border::Closed;
+      PolygonizeResult made = polygonize(is_cut() ? *amplified().ground : *amplified().field, options, task_);
+      if (shared) solid = rebased({made.mesh.origin, made.mesh.positions, {}, {}, made.mesh.triangles}, origin);
+      if (shared && !run_.solid) made.mesh = without_walls(made.mesh, options.region, options.resolution);
+      if (is_cut()) made.mesh = clip_mesh(made.mesh, *amplified().hole);
       report_.polygonized = made.statistics;
       report_.seconds.meshing = watch_.lap();
-      mesh = rebased(std::move(made.mesh), origin);
+      const TriangleMesh mesh = rebased(std::move(made.mesh), origin);
       const MeshMetadata metadata{comments(report_, report_.heightfield->lo()), amplified().label_names,
                                   amplified().label_colours};
       task_.begin("writing", run_.meshes.size());
@@ -275,10 +305,7 @@ class Runner {
       }
       if (!run_.report.empty()) report_.mesh = check_mesh(mesh);
     }
-    if (wants_level_set({run_.meshes, {}, {}})) {
-      const bool made = run_.solid && !mesh.triangles.empty();
-      level_sets(made ? std::move(mesh) : solid_mesh(origin));
-    }
+    if (level_set) level_sets(solid.triangles.empty() ? solid_mesh(origin) : solid);
     report_.seconds.writing = watch_.lap();
   }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "clip_mesh.h"
 #include "outcrop/amplify/report.h"
 #include "outcrop/amplify/scene_file.h"
 #include "outcrop/core/parallel.h"
@@ -62,13 +63,6 @@ PolygonizeOptions mesh_options(const PolygonizeRun& run, const Scene& scene) {
           .memory_limit = memory_limit_bytes(run.memory_limit_gib)};
 }
 
-/// What a level set holds: the same parts as the mesh, with walls where the solid leaves the region.
-TriangleMesh closed_mesh(const Field& field, PolygonizeOptions options, const Task& task) {
-  options.border = Border::Closed;
-  options.normals = options.labels = false;
-  return rebased(polygonize(field, options, task).mesh, Vec3(0.0));
-}
-
 Preview preview(const PolygonizeRun& run, const Scene& scene, const PolygonizeOptions& mesh, const Task& task) {
   PreviewOptions options;
   options.width = run.width;
@@ -103,13 +97,22 @@ std::string run_polygonize(const PolygonizeRun& run, const Notify& notify, const
   if (run.dry_run) {
     const PolygonizeEstimate estimate = estimate_polygonize(*scene.field, options, task);
     accepted();
+    const bool level_set = wants_level_set({run.meshes, {}, {}});
+    const double bytes = static_cast<double>(peak_memory() + estimate.bytes) +
+                         (level_set ? kLevelSetBytesACell * static_cast<double>(estimate.cells) : 0.0);
     return "resolution " + number_text(options.resolution) + " m\ncells      " + count_text(double(estimate.cells)) +
-           "\ntriangles  " + count_text(double(estimate.triangles)) + "\nmemory     " + byte_text(double(estimate.bytes)) +
-           "\n";
+           "\ntriangles  " + count_text(double(estimate.triangles)) + "\nmemory     " + byte_text(bytes) + "\n";
   }
   if (!run.meshes.empty()) {
-    const TriangleMesh mesh = rebased(polygonize(*scene.field, options, task).mesh, Vec3(0.0));
+    // A level set holds the distance to the closed mesh, and an open one is that without its walls: one mesh for both.
+    const bool distance = wants_level_set({run.meshes, {}, {}}) && !run.keep_voids;
+    PolygonizeOptions made = options;
+    if (distance) made.border = Border::Closed;
+    TriangleMesh solid = polygonize(*scene.field, made, task).mesh;
     accepted();
+    const bool open = distance && options.border == Border::Open;
+    const TriangleMesh mesh = rebased(open ? without_walls(solid, options.region, options.resolution) : solid, Vec3(0.0));
+    solid = rebased(std::move(solid), Vec3(0.0));
     if (mesh.triangles.empty() && notify)
       notify("cells of " + number_text(options.resolution) + " m find no surface in the region: the mesh is empty");
     const MeshMetadata metadata{{"outcrop " + std::string(version()) + " polygonize " + run.input.filename().string(),
@@ -121,18 +124,14 @@ std::string run_polygonize(const PolygonizeRun& run, const Notify& notify, const
       write_mesh(path, mesh, metadata, task);
       written(path, count_text(double(mesh.triangles.size())) + " triangles");
     }
-    if (wants_level_set({run.meshes, {}, {}})) {
-      const bool walls = options.border == Border::Closed || options.keep_voids;
-      const TriangleMesh solid = walls ? mesh : closed_mesh(*scene.field, options, task);
-      for (const auto& path : run.meshes) {
-        if (!is_vdb(path)) continue;
-        // The distance to a mesh knows no voids: to keep them, the field is written as it is, with all its parts.
-        if (options.keep_voids)
-          write_vdb(path, *scene.field, options.region, options.resolution, Vec3(0.0), kVdbBand, task);
-        else
-          write_level_set(path, solid, options.resolution, task);
-        written(path, "a level set");
-      }
+    for (const auto& path : run.meshes) {
+      if (!is_vdb(path)) continue;
+      // The distance to a mesh knows no voids: to keep them, the field is written as it is, with all its parts.
+      if (run.keep_voids)
+        write_vdb(path, *scene.field, options.region, options.resolution, Vec3(0.0), kVdbBand, task);
+      else
+        write_level_set(path, solid, options.resolution, task);
+      written(path, "a level set");
     }
   }
   if (run.meshes.empty()) accepted();

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include "outcrop/implicit/combine.h"
 #include "outcrop/implicit/primitives.h"
 #include "outcrop/mesh/check_mesh.h"
+#include "outcrop/mesh/polygonize.h"
 
 namespace outcrop {
 namespace {
@@ -38,6 +40,25 @@ TEST(ClipMesh, CutsAlongTheZeroLineAndKeepsTheSheetInOnePiece) {
   EXPECT_EQ(disc.normals.size(), disc.positions.size());
   EXPECT_EQ(disc.labels.size(), disc.positions.size());
   for (const Vec3f& p : disc.positions) EXPECT_LT(glm::length(Vec3(p) - Vec3(10.1, 10.2, 0.0)), 7.3 + 0.05);
+}
+
+TEST(WithoutWalls, AClosedMeshIsTheOpenOne) {
+  const FieldPtr solids[] = {sphere({0.3, 0.2, 0.1}, 1.3),                                 // Cut by all sides.
+                             sphere({0.0, 0.0, 0.0}, 0.8),                                 // By none.
+                             box_solid({{-3.0, -3.0, -3.0}, {1.02, 0.4, 0.2}}, 0.0),       // A face in the last cell.
+                             difference_of(slab(-9.0, 0.5), sphere({-1.0, 0.0, 0.5}, 0.7))};  // A bite out of an edge.
+  for (const FieldPtr& solid : solids)
+    for (const Parts parts : {Parts::All, Parts::Grounded}) {
+      PolygonizeOptions options{.region = {Vec3(-1.0), Vec3(1.03)}, .resolution = 0.1, .parts = parts};
+      const TriangleMesh open = polygonize(*solid, options).mesh;
+      options.border = Border::Closed;
+      const TriangleMesh made = without_walls(polygonize(*solid, options).mesh, options.region, options.resolution);
+      EXPECT_EQ(made.origin, open.origin);
+      EXPECT_EQ(made.positions, open.positions);
+      EXPECT_EQ(made.normals, open.normals);
+      EXPECT_EQ(made.labels, open.labels);
+      EXPECT_EQ(made.triangles, open.triangles);
+    }
 }
 
 TEST(ClipMesh, LeavesAMeshAloneThatLiesInside) {

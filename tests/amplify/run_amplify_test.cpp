@@ -135,6 +135,41 @@ TEST_F(RunAmplifyTest, ADryRunTellsAndWritesNothing) {
   EXPECT_EQ(outputs(), 0u);
 }
 
+/// How often a stage begins.
+class CountStage final : public Progress {
+ public:
+  explicit CountStage(std::string stage) : stage_(std::move(stage)) {}
+  void begin(std::string_view stage, std::size_t) override { count += stage == stage_; }
+  void advance(std::size_t) override {}
+
+  int count = 0;
+
+ private:
+  std::string stage_;
+};
+
+TEST_F(RunAmplifyTest, ALevelSetSharesTheMeshOfASheetAndChangesNoByteOfIt) {
+  CountStage meshings("meshing");
+  (void)run_amplify(run({"both.ply", "both.vdb"}), {}, {.stop = {}, .progress = &meshings});
+  EXPECT_EQ(meshings.count, 1);
+  (void)run_amplify(run({"alone.ply"}));
+  (void)run_amplify(run({"alone.vdb"}));
+  EXPECT_EQ(read_text(folder_ / "out/both.ply"), read_text(folder_ / "out/alone.ply"));
+  EXPECT_EQ(read_text(folder_ / "out/both.vdb"), read_text(folder_ / "out/alone.vdb"));
+}
+
+TEST_F(RunAmplifyTest, ADryRunCountsTheLevelSet) {
+  const auto memory = [&](std::vector<std::string> meshes) {
+    AmplifyRun job = run(std::move(meshes));
+    job.dry_run = true;
+    job.resolution = 0.1;
+    const std::string text = run_amplify(job);
+    return std::stod(text.substr(text.find("memory") + 6));
+  };
+  const double both = memory({"a.ply", "a.vdb"});  // First: what the process has held so far counts too.
+  EXPECT_LT(memory({"a.ply"}), 0.9 * both);
+}
+
 TEST_F(RunAmplifyTest, StoppingLeavesNothingBehind) {
   /// Stops the run at the first step of a stage.
   class StopAt final : public Progress {
