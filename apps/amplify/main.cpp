@@ -1,9 +1,7 @@
 /// amplify: a heightmap in, rocky terrain out.
 #include <CLI/CLI.hpp>
-#include <array>
 #include <iostream>
 #include <string>
-#include <vector>
 
 #include "cli.h"
 #include "outcrop/amplify/run_amplify.h"
@@ -30,9 +28,7 @@ int main(int argc, char** argv) {
 
   app.add_option("HEIGHTMAP", run.heightmap, "Elevations: EXR, TIFF, GeoTIFF, PNG or SRTM .hgt")->required();
   app.add_option("--strata", run.strata, "Description of the rock, strata.json");
-  app.add_option("-o,--output", run.meshes, "Mesh to write: .ply, .obj, .stl or .vdb; may be repeated")
-      ->allow_extra_args(false);
-  app.add_option("--preview", run.previews, "Picture to write: .png or .exr; may be repeated")->allow_extra_args(false);
+  outcrop::cli::add_output_options(app, run.meshes, run.previews, run.width, run.height);
   app.add_option("--report", run.report, "Report to write, JSON");
 
   app.add_option("--cell-size", run.heights.cell_size, "Metres between samples; default: the file's, else 1");
@@ -51,18 +47,13 @@ int main(int argc, char** argv) {
   app.add_flag("--solid", run.solid, "Close the sheet with walls and a floor");
   app.add_option("--seed", run.seed, "Same seed, same rock")->capture_default_str();
 
-  std::vector<int> size{run.width, run.height};
-  app.add_option("--size", size, "Width and height of previews, pixels")->expected(2)->capture_default_str();
   app.add_option("--camera", run.camera,
                  "X Y Z TX TY TZ: position and target in the mesh's coordinates, metres from the south-west corner; "
                  "default: frames the steepest part");
   app.add_option("--fov-deg", run.fov_deg, "Vertical field of view of the camera")->capture_default_str();
 
-  app.add_option("--threads", run.threads, "0: all cores")->capture_default_str();
-  app.add_option("--memory-limit", run.memory_limit_gib, "GiB; 0: half of the machine's memory")->capture_default_str();
-  app.add_flag("--dry-run", run.dry_run, "Only say what to expect: blocks, cells, triangles, seconds, bytes");
-  app.add_flag("-q,--quiet", options.quiet, "No messages but errors");
-  app.add_flag("-v,--verbose", options.verbose, "Progress even when stderr is no terminal");
+  outcrop::cli::add_run_options(app, run.threads, run.memory_limit_gib, run.dry_run, options,
+                                "blocks, cells, triangles, seconds, bytes");
 
   app.footer("Without -o, --preview and --report it writes HEIGHTMAP_rock.ply and HEIGHTMAP_rock.png to this folder.\n"
              "  amplify cliff.tif --dry-run\n"
@@ -72,12 +63,8 @@ int main(int argc, char** argv) {
   return outcrop::cli::run(app, argc, argv, options, [&](const outcrop::Task& task) {
     if (bilinear) run.interpolation = outcrop::Interpolation::Bilinear;
     if (!nodata.empty()) run.nodata = nodata == "hole" ? outcrop::NodataPolicy::Hole : outcrop::NodataPolicy::Fill;
-    run.width = size[0];
-    run.height = size[1];
     run.command = command_text(argc, argv);
-    const auto notify = [&](const std::string& line) {
-      if (!options.quiet) std::cerr << "amplify: " << line << '\n';
-    };
+    const auto notify = [&](const std::string& line) { outcrop::cli::notify(app, options, line); };
     std::cout << outcrop::run_amplify(run, notify, task);
   });
 }

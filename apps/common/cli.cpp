@@ -211,6 +211,33 @@ std::pair<int, std::string> explained() {
 
 }  // namespace
 
+void add_output_options(CLI::App& app, std::vector<std::filesystem::path>& meshes,
+                        std::vector<std::filesystem::path>& previews, int& width, int& height) {
+  app.add_option("-o,--output", meshes, "Mesh to write: .ply, .obj, .stl or .vdb; may be repeated")
+      ->allow_extra_args(false);
+  app.add_option("--preview", previews, "Picture to write: .png or .exr; may be repeated")->allow_extra_args(false);
+  const auto set_size = [&](const std::vector<int>& size) {
+    width = size[0];
+    height = size[1];
+  };
+  app.add_option_function<std::vector<int>>("--size", set_size, "Width and height of previews, pixels")
+      ->expected(2)
+      ->default_str(std::to_string(width) + " " + std::to_string(height));
+}
+
+void add_run_options(CLI::App& app, int& threads, double& memory_limit_gib, bool& dry_run, Options& options,
+                     const std::string& expected) {
+  app.add_option("--threads", threads, "0: all cores")->capture_default_str();
+  app.add_option("--memory-limit", memory_limit_gib, "GiB; 0: half of the machine's memory")->capture_default_str();
+  app.add_flag("--dry-run", dry_run, "Only say what to expect: " + expected);
+  app.add_flag("-q,--quiet", options.quiet, "No messages but errors");
+  app.add_flag("-v,--verbose", options.verbose, "Progress even when stderr is no terminal");
+}
+
+void notify(const CLI::App& app, const Options& options, const std::string& line) {
+  if (!options.quiet) std::cerr << app.get_name() << ": " << line << '\n';
+}
+
 int run(CLI::App& app, int argc, char** argv, const Options& options, const std::function<void(const Task&)>& body) {
   std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is an error of write, like a full disk
   const auto fail = [&](int code, const std::string& message) {

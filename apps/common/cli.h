@@ -2,7 +2,10 @@
 /// code.
 #pragma once
 
+#include <filesystem>
 #include <functional>
+#include <string>
+#include <vector>
 
 #include "outcrop/core/task.h"
 
@@ -17,6 +20,18 @@ struct Options {
   bool quiet = false;    ///< No progress, not even on a terminal.
   bool verbose = false;  ///< Progress even when stderr is no terminal.
 };
+
+/// `-o`, `--preview` and `--size`: what to write.
+void add_output_options(CLI::App& app, std::vector<std::filesystem::path>& meshes,
+                        std::vector<std::filesystem::path>& previews, int& width, int& height);
+
+/// `--threads`, `--memory-limit`, `--dry-run`, `--quiet` and `--verbose`: how to run.
+/// @param expected  What a dry run tells.
+void add_run_options(CLI::App& app, int& threads, double& memory_limit_gib, bool& dry_run, Options& options,
+                     const std::string& expected);
+
+/// Writes a line `program: line` to stderr, nothing when quiet.
+void notify(const CLI::App& app, const Options& options, const std::string& line);
 
 /// Parses the command line, runs `body`, and returns the program's exit code.
 ///

@@ -4,7 +4,6 @@
 #include <iostream>
 #include <map>
 #include <string>
-#include <vector>
 
 #include "cli.h"
 #include "outcrop/amplify/run_polygonize.h"
@@ -15,9 +14,7 @@ int main(int argc, char** argv) {
   outcrop::cli::Options options;
 
   app.add_option("INPUT", run.input, "A scene (.json), a level set (.vdb) or a closed mesh (.ply, .obj, .stl)")->required();
-  app.add_option("-o,--output", run.meshes, "Mesh to write: .ply, .obj, .stl or .vdb; may be repeated")
-      ->allow_extra_args(false);
-  app.add_option("--preview", run.previews, "Picture to write: .png or .exr; may be repeated")->allow_extra_args(false);
+  outcrop::cli::add_output_options(app, run.meshes, run.previews, run.width, run.height);
   app.add_option("--resolution", run.resolution, "Edge of the cells, metres; default: the region's longest side / 128");
   std::optional<std::array<double, 6>> region;
   app.add_option("--region", region, "X0 Y0 Z0 X1 Y1 Z1, metres; default: the scene's, else where the solid is");
@@ -35,13 +32,8 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_flag("--keep-voids", run.keep_voids, "Keep closed voids inside the solid");
 
-  std::vector<int> size{run.width, run.height};
-  app.add_option("--size", size, "Width and height of previews, pixels")->expected(2)->capture_default_str();
-  app.add_option("--threads", run.threads, "0: all cores")->capture_default_str();
-  app.add_option("--memory-limit", run.memory_limit_gib, "GiB; 0: half of the machine's memory")->capture_default_str();
-  app.add_flag("--dry-run", run.dry_run, "Only say what to expect: cells, triangles, memory");
-  app.add_flag("-q,--quiet", options.quiet, "No messages but errors");
-  app.add_flag("-v,--verbose", options.verbose, "Progress even when stderr is no terminal");
+  outcrop::cli::add_run_options(app, run.threads, run.memory_limit_gib, run.dry_run, options,
+                                "cells, triangles, memory");
 
   app.footer("A scene in one line: {\"field\": {\"difference\": {\"a\": {\"box\": {}}, \"b\": {\"sphere\": {\"radius\": 1.2}}}}}\n"
              "  polygonize scene.json -o solid.ply --preview solid.png\n"
@@ -51,11 +43,7 @@ int main(int argc, char** argv) {
     run.border = borders.at(border);
     run.parts = kept.at(parts);
     if (region) run.region = outcrop::Box{{(*region)[0], (*region)[1], (*region)[2]}, {(*region)[3], (*region)[4], (*region)[5]}};
-    run.width = size[0];
-    run.height = size[1];
-    const auto notify = [&](const std::string& line) {
-      if (!options.quiet) std::cerr << "polygonize: " << line << '\n';
-    };
+    const auto notify = [&](const std::string& line) { outcrop::cli::notify(app, options, line); };
     std::cout << outcrop::run_polygonize(run, notify, task);
   });
 }
