@@ -134,14 +134,17 @@ std::string about_extras(const CLI::App& app) {
 
 std::string expected_by(const CLI::Option* option) {
   const std::string type = option ? option->get_type_name() : "";
-  if (type.starts_with("FLOAT")) return "a number";
+  const bool several = option && option->get_items_expected_max() > 1;
+  if (type.find("FLOAT") != type.npos) return several ? "numbers" : "a number";
   if (type.starts_with("UINT")) return "an integer that is not negative";
-  if (type.starts_with("INT")) return "an integer";
+  if (type.starts_with("INT")) return several ? "integers" : "an integer";
   return "another value";
 }
 
 std::string about(const CLI::App& app, const CLI::ParseError& error) {
-  if (const std::string extras = about_extras(app); !extras.empty()) return extras;
+  const bool counted = error.get_name() == "ArgumentMismatch", converted = error.get_name() == "ConversionError";
+  // An option that took too few or too many values leaves others over: then it is the one to name.
+  if (const std::string extras = about_extras(app); !counted && !converted && !extras.empty()) return extras;
   std::string text = error.what();
   constexpr std::string_view kUnconverted = "Could not convert: ";
   if (text.starts_with(kUnconverted)) {
@@ -153,7 +156,7 @@ std::string about(const CLI::App& app, const CLI::ParseError& error) {
   // "--region: 4 required FLOAT missing", "--cell-size: At Most 1 required but received 2"
   const std::string name = text.substr(0, text.find(": "));
   const CLI::Option* const option = app.get_option_no_throw(name);
-  if (option && error.get_name() == "ArgumentMismatch") {
+  if (option && counted) {
     const int count = option->get_items_expected_min();
     const bool missing = text.ends_with(" missing");
     return name + ": expected " + (count == 1 ? "one value" : std::to_string(count) + " values") + ", got " +

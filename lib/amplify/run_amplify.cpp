@@ -166,7 +166,7 @@ class Runner {
     prepare();
     read();
     compose();
-    if (run_.dry_run) return dry_run_text(run_, report_, expectation());
+    if (run_.dry_run) return dry_run_text(run_, report_, expected_);
     if (!run_.meshes.empty()) mesh();
     if (!run_.previews.empty()) preview();
     if (!run_.report.empty()) write_report();
@@ -243,6 +243,8 @@ class Runner {
     if (block_count(amplified()) == 0)
       note("no ground here is steeper than " + number_text(degrees(report_.rock.placement.slope)) +
            " degrees, or blocks are below the resolution: the terrain stays as it is");
+    if (run_.dry_run || !run_.meshes.empty()) expected_ = expectation();
+    if (!run_.dry_run) require_memory(static_cast<double>(expected_.mesh.bytes));
     speak();
     watch_.lap();
   }
@@ -251,11 +253,14 @@ class Runner {
   void check_memory(const Window& window) const {
     const Vec2 extent = window.hi - window.lo;
     const double cells = extent.x * extent.y / (window.resolution * window.resolution);
-    const double limit = static_cast<double>(report_.memory_limit);
-    if (run_.meshes.empty() || cells * kLeastBytesACell <= limit) return;
-    const double fits = std::sqrt(extent.x * extent.y * kLeastBytesACell / limit);
-    require(false, "--resolution", "above " + number_text(fits, 3) + " m for a memory limit of " + byte_text(limit),
-            window.resolution);
+    if (!run_.meshes.empty()) require_memory(cells * kLeastBytesACell);
+  }
+
+  void require_memory(double bytes) const {
+    const double limit = static_cast<double>(report_.memory_limit), resolution = report_.options.resolution;
+    const double fits = resolution * std::sqrt(bytes / limit);
+    require(bytes <= limit, "--resolution",
+            "above " + number_text(fits, 3) + " m for a memory limit of " + byte_text(limit), resolution);
   }
 
   [[nodiscard]] PolygonizeOptions mesh_options() const {
@@ -354,6 +359,7 @@ class Runner {
   const Notify& notify_;
   const Task& task_;
   AmplifyReport report_;
+  Expectation expected_;
   Stopwatch watch_, total_;
   std::vector<std::string> waiting_;
   bool accepted_ = false;

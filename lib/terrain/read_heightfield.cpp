@@ -21,7 +21,9 @@ namespace {
 using terrain::GeotiffTags;
 using Notes = std::vector<std::string>;
 
-constexpr double kLargestElevation = 1e9;  // Metres: what Heightfield accepts.
+constexpr double kLargestElevation = 1e6;                  // Metres: that of any planet.
+constexpr double kLeastCell = 1e-4, kLargestCell = 1e6;    // Metres.
+constexpr const char* kCellBounds = "0.0001 to 1e6 m";
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 // Values that stand for no data by custom, without a tag: ESRI's, SRTM's and the extremes of float that tools write.
@@ -227,7 +229,8 @@ HeightfieldFile read_raster(const std::filesystem::path& path, bool cell_given) 
 
 void check(const HeightfieldOptions& options) {
   if (options.cell_size) {
-    require(std::isfinite(*options.cell_size) && *options.cell_size > 0.0, "cell_size", "> 0 m", *options.cell_size);
+    require(*options.cell_size >= kLeastCell && *options.cell_size <= kLargestCell, "cell_size", kCellBounds,
+            *options.cell_size);
   }
   require(std::isfinite(options.height_scale) && options.height_scale != 0.0, "height_scale",
           "a finite number other than 0", options.height_scale);
@@ -245,6 +248,9 @@ HeightfieldFile read_heightfield(const std::filesystem::path& path, const Height
     fail(path, "at least 2 x 2 samples", std::to_string(grid.width) + " x " + std::to_string(grid.height));
   }
   if (options.cell_size) grid.cell_x = grid.cell_y = *options.cell_size;
+  for (const double cell : {grid.cell_x, grid.cell_y})
+    if (!(cell >= kLeastCell && cell <= kLargestCell))
+      fail(path, std::string("cells of ") + kCellBounds, format("%.4g m", cell));
 
   bool any = false;
   for (std::size_t i = 0; i < grid.elevations.size(); ++i) {
@@ -252,7 +258,7 @@ HeightfieldFile read_heightfield(const std::filesystem::path& path, const Height
     if (std::isnan(h)) continue;
     const double metres = h * options.height_scale + options.height_offset;
     if (!(std::abs(metres) <= kLargestElevation)) {
-      fail(path, "elevations within ±1e9 m",
+      fail(path, "elevations within ±1e6 m",
            format("%.9g m in column %.0f, row %.0f", metres, static_cast<double>(i % grid.width),
                   static_cast<double>(i / grid.width)));
     }

@@ -178,6 +178,17 @@ class BadOptions(ProgramTest):
         self.assert_refused(self.amplify("cliff.exr", "--threads", "-3", "-o", "out/a.ply"), "threads")
         self.assert_refused(self.amplify("cliff.exr", "--nodata", "spike", "-o", "out/a.ply"), "nodata")
 
+    def test_an_option_with_too_few_values_is_named_not_what_follows_it(self):
+        self.assert_refused(self.amplify("cliff.exr", "--region", "0", "0", "1"), "--region: expected 4 values")
+        self.assert_refused(self.amplify("cliff.exr", "--region", "0", "0", "1", "-o", "out/a.ply"),
+                            "--region: expected numbers")
+
+    def test_a_refusal_after_the_terrain_was_read_stands_alone(self):
+        # The file gives no cell size, which is worth a line, and the height of the wall is only known to the mesher.
+        images.exr(self.path("wall.exr"), 16, 16, {"Y": [9e5 * (x > 8) for y in range(16) for x in range(16)]})
+        result = self.amplify("wall.exr", "--strata", "small.json", "--resolution", "0.5", "-o", "out/a.ply")
+        self.assert_refused(result, "resolution")
+
     def test_region_outside_names_the_terrain(self):
         result = self.amplify("cliff.exr", "--region", "100", "0", "200", "50", "-o", "out/a.ply")
         self.assert_refused(result, "region", "0 0 47 47", "100 0 200 50")

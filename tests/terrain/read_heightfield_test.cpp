@@ -378,9 +378,12 @@ TEST_F(ReadHeightfield, OptionsOutOfBoundsAreNamed) {
     }
     return "read";
   };
-  EXPECT_EQ(message({.cell_size = 0.0}), "cell_size: expected > 0 m, got 0");
-  EXPECT_EQ(message({.cell_size = -2.0}), "cell_size: expected > 0 m, got -2");
+  EXPECT_EQ(message({.cell_size = 0.0}), "cell_size: expected 0.0001 to 1e6 m, got 0");
+  EXPECT_EQ(message({.cell_size = -2.0}), "cell_size: expected 0.0001 to 1e6 m, got -2");
   EXPECT_NE(message({.cell_size = NAN}), "read");
+  EXPECT_NE(message({.cell_size = INFINITY}), "read");
+  write_geotiff(file("tiny.tif"), 3, 2, kSamples, {.scale = {1e-9, 1e-9, 0}, .tie_point = {0, 0, 0, 0, 0, 0}});
+  EXPECT_NE(refusal(file("tiny.tif")).find("cells of 0.0001 to 1e6 m, got 1e-09 m"), std::string::npos);
   EXPECT_EQ(message({.height_scale = 0.0}), "height_scale: expected a finite number other than 0, got 0");
   EXPECT_NE(message({.height_scale = INFINITY}), "read");
   EXPECT_NE(message({.height_offset = NAN}), "read");

@@ -12,7 +12,7 @@ namespace outcrop {
 
 /// What the caller knows better than the file.
 struct HeightfieldOptions {
-  std::optional<double> cell_size;  ///< Metres, > 0; overrides the file's tags.
+  std::optional<double> cell_size;  ///< Metres, 1e-4 to 1e6; overrides the file's tags.
   double height_scale = 1.0;        ///< Elevation = sample · scale + offset; ≠ 0, finite.
   double height_offset = 0.0;       ///< Metres.
 };
@@ -30,7 +30,7 @@ struct HeightfieldFile {
 /// lies south up or mirrored are turned; askew ones are refused; feet become metres. Geographic rasters (degrees) get metres a degree at the raster's middle latitude,
 /// and their origin is longitude and latitude times those. SRTM .hgt: big-endian 16-bit, -32768 is nodata, the name
 /// gives the corner. Without tags the cell is 1 m and the origin (0, 0). No data, besides NaN and the tag's value:
-/// -9999, -32768, infinity and what lies beyond ±1e30.
+/// -9999, -32768, infinity and what lies beyond ±1e30. Elevations beyond ±1e6 m are refused.
 /// @throws InputError `path: expected …, got …`; ParameterError for options out of bounds.
 [[nodiscard]] HeightfieldFile read_heightfield(const std::filesystem::path& path,
                                                const HeightfieldOptions& options = {});
