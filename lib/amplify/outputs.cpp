@@ -54,6 +54,11 @@ void check_outputs(const Outputs& outputs, const std::vector<std::filesystem::pa
   }
 }
 
+void check_size(int width, int height) {
+  require(width >= 16 && width <= 16384 && height >= 16 && height <= 16384, "--size", "16 to 16384 pixels each",
+          std::to_string(width) + " " + std::to_string(height));
+}
+
 bool is_vdb(const std::filesystem::path& path) { return extension(path) == ".vdb"; }
 
 bool wants_triangles(const Outputs& outputs) {

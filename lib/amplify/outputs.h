@@ -14,6 +14,8 @@ namespace outcrop {
 inline constexpr double kVdbBand = 3.0;               ///< Voxels of a level set on either side of the surface.
 inline constexpr double kLevelSetBytesACell = 250.0;  ///< Of memory, a cell of the surface; 232 to 267 measured.
 
+inline constexpr double kLeastLength = 1e-6;  ///< Metres: of cells and solids. Far below, floats run out of exponents.
+
 /// Where a run wants to write.
 struct Outputs {
   std::vector<std::filesystem::path> meshes;    ///< .ply, .obj, .stl, .vdb
@@ -25,6 +27,9 @@ struct Outputs {
 
 /// @throws ParameterError for an unknown extension, a folder that cannot be written to, a file named twice or an input.
 void check_outputs(const Outputs& outputs, const std::vector<std::filesystem::path>& inputs);
+
+/// @throws ParameterError for a picture of less than 16 or more than 16384 pixels a side.
+void check_size(int width, int height);
 
 [[nodiscard]] bool is_vdb(const std::filesystem::path& path);
 /// Whether any of the outputs needs triangles.

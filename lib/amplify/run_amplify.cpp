@@ -200,8 +200,7 @@ class Runner {
       run_.previews = {stem + ".png"};
       say("writing " + stem + ".ply and " + stem + ".png; -o, --preview or --report choose otherwise");
     }
-    require(run_.width >= 16 && run_.width <= 16384 && run_.height >= 16 && run_.height <= 16384, "--size",
-            "16 to 16384 pixels each", std::to_string(run_.width) + " " + std::to_string(run_.height));
+    check_size(run_.width, run_.height);
     require(run_.fov_deg >= 1.0 && run_.fov_deg <= 150.0, "--fov-deg", "1 to 150 degrees", run_.fov_deg);
     if (run_.camera) {
       const std::array<double, 6>& c = *run_.camera;

@@ -53,8 +53,8 @@ PolygonizeOptions mesh_options(const PolygonizeRun& run, const Scene& scene) {
   const Vec3 size = region->size();
   const double longest = std::max({size.x, size.y, size.z});
   const double resolution = run.resolution ? *run.resolution : scene.resolution.value_or(longest / kDefaultCells);
-  require(resolution > 0.0 && resolution <= longest, "--resolution",
-          "metres above 0 and at most " + number_text(longest) + ", the region's longest side", resolution);
+  require(resolution >= kLeastLength && resolution <= longest, "--resolution",
+          number_text(kLeastLength) + " m to " + number_text(longest) + " m, the region's longest side", resolution);
   return {.region = *region,
           .resolution = resolution,
           .border = run.border,
@@ -80,6 +80,7 @@ Preview preview(const PolygonizeRun& run, const Scene& scene, const PolygonizeOp
 std::string run_polygonize(const PolygonizeRun& run, const Notify& notify, const Task& task) {
   require(run.threads >= 0, "--threads", "0 (all cores) or more", run.threads);
   require(run.dry_run || !run.meshes.empty() || !run.previews.empty(), "--output", "at least one mesh or --preview", "none");
+  check_size(run.width, run.height);
   check_outputs({run.meshes, run.previews, {}}, {run.input});
   const ThreadLimit limit(run.threads);
   const auto written = [&](const std::filesystem::path& path, const std::string& what) {

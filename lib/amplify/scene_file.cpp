@@ -16,6 +16,7 @@
 #include "outcrop/implicit/primitives.h"
 #include "outcrop/terrain/read_heightfield.h"
 #include "outcrop/terrain/terrain_field.h"
+#include "outputs.h"
 
 namespace outcrop {
 namespace {
@@ -25,7 +26,7 @@ constexpr double kUniverse = 16384.0;   // Metres to each side: where a solid of
 constexpr double kSearchCells = 32.0;   // Across the solid, when it is found.
 constexpr std::size_t kSearchBoxes = 1 << 15;
 constexpr Bounds kFinite{-1e9, 1e9};    // Metres: everything on Earth, and no overflow in squares.
-constexpr Bounds kLength{.lo = 0.0, .hi = 1e9, .open_lo = true};
+constexpr Bounds kLength{kLeastLength, 1e9};
 
 struct Context {
   std::filesystem::path folder;
