@@ -1,6 +1,7 @@
 #include "lattice.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdio>
 #include <string>
@@ -12,20 +13,31 @@ namespace {
 
 /// A size that is whole cells but for rounding gets no extra cell.
 constexpr double kRounding = 1e-6;
-constexpr std::size_t kNodes = kBrickNodes * kBrickNodes * kBrickNodes;
+/// Levels are limited so that this many coarsest cells lie along the shorter side: rounding the number of cells up to
+/// whole coarsest ones then costs at most a sixteenth of a cell's edge.
+constexpr int kCoarsestAlong = 16;
+
+int coarsest_level(const PolygonizeOptions& options, const IVec3& cells) {
+  require(std::isfinite(options.tolerance) && options.tolerance >= 0.0, "tolerance", "a number of metres >= 0",
+          options.tolerance);
+  require(options.levels >= 0 && options.levels <= kMaxLevels, "levels", "0 to 8", options.levels);
+  if (options.tolerance == 0.0) return 0;
+  const int along = std::min(cells.x, cells.y) / kCoarsestAlong;
+  return along == 0 ? 0 : std::min(options.levels, static_cast<int>(std::bit_width(static_cast<unsigned>(along))) - 1);
+}
+
+}  // namespace
 
 bool may_hold_surface(const Field& field, const Box& box) {
   const Interval range = field.bound(box);
   return range.lo < 0.0 && range.hi >= 0.0;  // f = 0 is air.
 }
 
-}  // namespace
-
 Lattice Lattice::over(const PolygonizeOptions& options) {
   const Box& region = options.region;
   require(std::isfinite(options.resolution) && options.resolution > 0.0, "resolution", "a number of metres > 0",
           options.resolution);
-  Lattice lattice{.lo = region.lo, .step = options.resolution};
+  Lattice lattice{.lo = region.lo, .step = Vec3(options.resolution)};
   for (int axis = 0; axis < 3; ++axis) {
     const std::string name = std::string("region.") + "xyz"[axis];
     require(std::isfinite(region.lo[axis]), name, "a finite lower end", region.lo[axis]);
@@ -40,6 +52,13 @@ Lattice Lattice::over(const PolygonizeOptions& options) {
       require(false, "resolution", bound, options.resolution);
     }
     lattice.cells[axis] = std::max(1, static_cast<int>(cells));
+  }
+  lattice.coarsest = coarsest_level(options, lattice.cells);
+  if (lattice.coarsest == 0) return lattice;
+  for (int axis = 0; axis < 3; ++axis) {
+    lattice.cells[axis] = (((lattice.cells[axis] - 1) >> lattice.coarsest) + 1) << lattice.coarsest;
+    // Sideways the mesh ends where it was asked to end; upwards there is room.
+    if (axis < 2) lattice.step[axis] = (region.hi[axis] - region.lo[axis]) / lattice.cells[axis];
   }
   return lattice;
 }
@@ -64,37 +83,33 @@ std::vector<Cell> root_cells(const Lattice& lattice, const Field& field) {
 std::vector<Cell> split(const Lattice& lattice, const Cell& cell, int level) {
   std::vector<Cell> children;
   const FieldPtr field = cell.field->narrow(lattice.box(cell.index, level));
-  const int span = kBrickCells << (level - 1);
   for (int octant = 0; octant < 8; ++octant) {
-    const IVec3 index = 2 * cell.index + IVec3(octant & 1, octant >> 1 & 1, octant >> 2 & 1);
-    if (index.x * span >= lattice.cells.x || index.y * span >= lattice.cells.y || index.z * span >= lattice.cells.z)
-      continue;
-    if (may_hold_surface(*field, lattice.box(index, level - 1))) children.push_back({index, field});
+    const IVec3 index = child_index(cell.index, octant);
+    if (lattice.holds(index, level - 1) && may_hold_surface(*field, lattice.box(index, level - 1)))
+      children.push_back({index, field});
   }
   return children;
 }
 
-Brick::Brick(const Lattice& lattice, const IVec3& brick_index) : index(brick_index) {
-  for (int axis = 0; axis < 3; ++axis) {
-    const int rest = lattice.cells[axis] - index[axis] * kBrickCells;
-    cells[axis] = std::min(rest, kBrickCells);
-    owned[axis] = rest <= kBrickCells ? cells[axis] + 1 : kBrickCells;
-  }
+Brick::Brick(const Lattice& lattice, const IVec3& brick_index, int brick_level)
+    : index(brick_index), level(brick_level) {
+  cells = glm::min((lattice.cells - first()) / (1 << level), IVec3(kBrickCells));
 }
 
 BrickValues::BrickValues() : x_(kNodes), y_(kNodes), z_(kNodes), values_(kNodes) {}
 
 bool BrickValues::sample(const Lattice& lattice, const Field& field, Brick& brick) {
-  const IVec3 first = brick.index * kBrickCells;
+  const IVec3 first = brick.first();
+  const int stride = 1 << brick.level;
   std::array<double, kBrickNodes> row_x;
-  for (int i = 0; i < kBrickNodes; ++i) row_x[i] = lattice.coordinate(0, first.x + i);
+  for (int i = 0; i < kBrickNodes; ++i) row_x[i] = lattice.coordinate(0, first.x + i * stride);
   const int width = brick.cells.x + 1;
   std::size_t n = 0;
   for (int k = 0; k <= brick.cells.z; ++k) {
-    const double z = lattice.coordinate(2, first.z + k);
+    const double z = lattice.coordinate(2, first.z + k * stride);
     for (int j = 0; j <= brick.cells.y; ++j, n += width) {
       std::copy_n(row_x.begin(), width, x_.begin() + n);
-      std::fill_n(y_.begin() + n, width, lattice.coordinate(1, first.y + j));
+      std::fill_n(y_.begin() + n, width, lattice.coordinate(1, first.y + j * stride));
       std::fill_n(z_.begin() + n, width, z);
     }
   }

@@ -3,17 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <utility>
 #include <vector>
 
-#include "border.h"
 #include "lattice.h"
+#include "mesh_region.h"
 #include "outcrop/core/error.h"
 #include "outcrop/core/parallel.h"
 #include "outcrop/core/rng.h"
 #include "outcrop/mesh/marching_cubes.h"
-#include "parts.h"
-#include "sheet.h"
 
 namespace outcrop {
 namespace {
@@ -29,7 +28,6 @@ constexpr std::size_t kSampledCells = 1024;
 /// the flags of triangles.
 constexpr std::size_t kBytesAVertex = 2 * (2 * sizeof(Vec3f) + sizeof(Label)) + 3 * sizeof(std::uint32_t);
 constexpr std::size_t kBytesATriangle = sizeof(std::array<std::uint32_t, 3>) + sizeof(std::uint32_t) + 1;
-constexpr std::size_t kBytesABrick = 2 * sizeof(Brick);
 
 PolygonizeEstimate estimate(const Field& field, const Lattice& lattice, const Task& task) {
   std::vector<Cell> cells = root_cells(lattice, field);
@@ -61,12 +59,12 @@ PolygonizeEstimate estimate(const Field& field, const Lattice& lattice, const Ta
       cells.size(),
       [&](std::size_t i) {
         Count count;
-        Brick brick(lattice, cells[i].index);
+        Brick brick(lattice, cells[i].index, 0);
         BrickValues values;
         if (values.sample(lattice, *cells[i].field->narrow(lattice.box(cells[i].index, 0)), brick)) count.bricks = 1;
         brick.for_each_mixed_cell([&](int, int cube_case) {
           ++count.cells;
-          count.triangles += CubeCases::table()[cube_case].size();
+          count.triangles += CaseTable::cube()[cube_case].size();
         });
         return count;
       },
@@ -83,7 +81,7 @@ PolygonizeEstimate estimate(const Field& field, const Lattice& lattice, const Ta
   PolygonizeEstimate result{.cells = scaled(sum.cells), .triangles = scaled(sum.triangles)};
   // A triangle mesh has about half as many vertices as triangles.
   result.bytes =
-      result.triangles / 2 * kBytesAVertex + result.triangles * kBytesATriangle + scaled(sum.bricks) * kBytesABrick;
+      result.triangles / 2 * kBytesAVertex + result.triangles * kBytesATriangle;
   return result;
 }
 
@@ -108,25 +106,21 @@ void require_memory(const PolygonizeEstimate& expected, const PolygonizeOptions&
 }  // namespace
 
 PolygonizeResult polygonize(const Field& field, const PolygonizeOptions& options, const Task& task) {
+  meshing::MeshCollector collector;
+  MeshSink* const sinks[] = {&collector};
+  PolygonizeResult result;
+  const PieceOptions one_piece{.chunks = std::numeric_limits<std::size_t>::max() / 2};
+  result.statistics = polygonize_pieces(field, options, one_piece, sinks, task);
+  result.mesh = collector.take();
+  return result;
+}
+
+PolygonizeStatistics polygonize_pieces(const Field& field, const PolygonizeOptions& options, const PieceOptions& pieces,
+                                       std::span<MeshSink* const> sinks, const Task& task) {
+  require(pieces.chunks >= 1, "chunks", "at least 1", static_cast<double>(pieces.chunks));
   const Lattice lattice = Lattice::over(options);
   if (options.memory_limit > 0) require_memory(estimate(field, lattice, task), options);
-  PolygonizeResult result = mesh_sheet(field, lattice, options, task);
-  const bool closed = options.border == Border::Closed, all_parts = options.parts == Parts::All && options.keep_voids;
-  if (!closed && all_parts) return result;
-
-  // Which rock hangs together is a question to the closed mesh: a ledge that the border cuts off has no wall without
-  // it.
-  const std::size_t sheet_triangles = result.mesh.triangles.size();
-  result.mesh = close_sheet(std::move(result.mesh), field, lattice, options, task);
-  if (!all_parts || !closed) {
-    meshing::PartSelection selection = select_parts(result.mesh, lattice, options.parts, options.keep_voids);
-    result.statistics.parts_removed = selection.parts_removed;
-    result.statistics.voids_removed = selection.voids_removed;
-    if (!closed) std::fill(selection.keep.begin() + sheet_triangles, selection.keep.end(), 0);
-    const bool whole = std::find(selection.keep.begin(), selection.keep.end(), 0) == selection.keep.end();
-    if (!whole) result.mesh = meshing::filtered(std::move(result.mesh), selection.keep);
-  }
-  return result;
+  return meshing::mesh_region(field, lattice, options, pieces, sinks, task);
 }
 
 PolygonizeEstimate estimate_polygonize(const Field& field, const PolygonizeOptions& options, const Task& task) {

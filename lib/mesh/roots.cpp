@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace outcrop::meshing {
 namespace {
@@ -40,56 +41,54 @@ bool refine(Crossing& c, double f) {
 
 }  // namespace
 
-Vec3 Crossing::position(const Lattice& lattice) const noexcept {
-  Vec3 p = lattice.node(node);
-  p[axis] = lattice.coordinate(axis, node[axis] + t);
-  return p;
-}
-
-std::size_t RootSolver::solve(const Lattice& lattice, const Field& field, std::span<Crossing> crossings) {
-  std::size_t evaluations = 0;
-  active_.resize(crossings.size());
-  for (std::size_t i = 0; i < crossings.size(); ++i) {
-    active_[i] = i;
-    crossings[i].tolerance = kResidual * std::abs(crossings[i].f_a - crossings[i].f_b);
-    propose(crossings[i]);
-  }
-  for (int step = 0; step < kMaxSteps && !active_.empty(); ++step) {
-    const std::size_t n = active_.size();
-    x_.resize(n);
-    y_.resize(n);
-    z_.resize(n);
-    values_.resize(n);
-    for (std::size_t i = 0; i < n; ++i) {
-      const Vec3 p = crossings[active_[i]].position(lattice);
-      x_[i] = p.x;
-      y_[i] = p.y;
-      z_[i] = p.z;
-    }
-    field.values({x_, y_, z_}, values_, {});
-    evaluations += n;
-    std::size_t left = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      if (!refine(crossings[active_[i]], values_[i])) continue;
-      propose(crossings[active_[i]]);
-      active_[left++] = active_[i];
-    }
-    active_.resize(left);
-  }
-  return evaluations;
-}
-
-Points RootSolver::places(const Lattice& lattice, std::span<const Crossing> crossings) {
-  x_.resize(crossings.size());
-  y_.resize(crossings.size());
-  z_.resize(crossings.size());
-  for (std::size_t i = 0; i < crossings.size(); ++i) {
-    const Vec3 p = crossings[i].position(lattice);
+void RootSolver::gather(const Lattice& lattice, std::span<const Crossing> crossings) {
+  const std::size_t n = active_.size();
+  x_.resize(n);
+  y_.resize(n);
+  z_.resize(n);
+  values_.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec3 p = lattice.place(crossings[active_[i]].index());
     x_[i] = p.x;
     y_[i] = p.y;
     z_[i] = p.z;
   }
-  return {x_, y_, z_};
+}
+
+std::size_t RootSolver::solve(const Lattice& lattice, const Field& field, std::span<Crossing> crossings,
+                              bool gradients) {
+  std::size_t evaluations = 0;
+  const auto activate_all = [&] {
+    active_.resize(crossings.size());
+    std::iota(active_.begin(), active_.end(), std::size_t{0});
+  };
+  activate_all();
+  for (Crossing& c : crossings) {
+    c.tolerance = kResidual * std::abs(c.f_a - c.f_b);
+    propose(c);
+  }
+  for (int step = 0; step < kMaxSteps && !active_.empty(); ++step) {
+    gather(lattice, crossings);
+    field.values({x_, y_, z_}, values_, {});
+    evaluations += active_.size();
+    std::size_t left = 0;
+    for (std::size_t i = 0; i < active_.size(); ++i) {
+      Crossing& c = crossings[active_[i]];
+      if (!refine(c, values_[i])) continue;
+      propose(c);
+      active_[left++] = active_[i];
+    }
+    active_.resize(left);
+  }
+  activate_all();
+  gather(lattice, crossings);
+  gradients_.clear();
+  if (gradients) {
+    gradients_.resize(crossings.size());
+    field.values({x_, y_, z_}, values_, gradients_);
+    evaluations += crossings.size();
+  }
+  return evaluations;
 }
 
 }  // namespace outcrop::meshing

@@ -14,6 +14,12 @@ namespace outcrop::meshing {
 class UnionFind {
  public:
   explicit UnionFind(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
+  /// Adds single members up to `count`.
+  void resize(std::size_t count) {
+    const std::size_t old = parent_.size();
+    parent_.resize(count);
+    std::iota(parent_.begin() + static_cast<std::ptrdiff_t>(old), parent_.end(), static_cast<std::uint32_t>(old));
+  }
   [[nodiscard]] std::uint32_t root(std::uint32_t v) {
     while (parent_[v] != v) v = parent_[v] = parent_[parent_[v]];
     return v;

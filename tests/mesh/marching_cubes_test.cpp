@@ -27,7 +27,7 @@ IVec3 far_end(const CubeEdge& edge) {
 /// Each directed side of the case's triangles and how often it occurs.
 std::map<std::pair<int, int>, int> directed_sides(int cube_case) {
   std::map<std::pair<int, int>, int> sides;
-  for (const CubeTriangle& t : CubeCases::table()[cube_case])
+  for (const CellTriangle& t : CaseTable::cube()[cube_case])
     for (int i = 0; i < 3; ++i) ++sides[{t[i], t[(i + 1) % 3]}];
   return sides;
 }
@@ -55,7 +55,7 @@ bool crosses(const Vec3& p, const Vec3& q, const Triangle& t) {
 TEST(MarchingCubes, CutEveryCrossingEdgeAndNoOther) {
   for (int c = 0; c < 256; ++c) {
     std::set<int> used;
-    for (const CubeTriangle& t : CubeCases::table()[c]) used.insert(t.begin(), t.end());
+    for (const CellTriangle& t : CaseTable::cube()[c]) used.insert(t.begin(), t.end());
     for (int e = 0; e < kCubeEdges; ++e) {
       const CubeEdge edge = cube_edge(e);
       EXPECT_EQ(used.contains(e), rock(c, edge.from) != rock(c, far_end(edge))) << "case " << c << " edge " << e;
@@ -68,7 +68,7 @@ TEST(MarchingCubes, LayNoDiagonalInAFaceOfTheCell) {
     const auto open = open_sides(c);
     for (const auto& [side, count] : directed_sides(c)) {
       EXPECT_EQ(count, 1) << "case " << c;
-      EXPECT_EQ(share_cube_face(side.first, side.second), open.contains(side)) << "case " << c;
+      EXPECT_EQ(CellShape::cube().share_face(side.first, side.second), open.contains(side)) << "case " << c;
     }
   }
 }
@@ -112,7 +112,7 @@ TEST(MarchingCubes, CloseAgainstEveryNeighbour) {
 
 TEST(MarchingCubes, NeverIntersectThemselvesWhereverTheEdgesAreCut) {
   for (int c = 0; c < 256; ++c) {
-    const auto triangles = CubeCases::table()[c];
+    const auto triangles = CaseTable::cube()[c];
     for (int sample = 0; sample < 600; ++sample) {
       Rng rng(7, "cube", static_cast<std::uint64_t>(c * 1000 + sample));
       std::array<Vec3, kCubeEdges> cut;
@@ -125,8 +125,8 @@ TEST(MarchingCubes, NeverIntersectThemselvesWhereverTheEdgesAreCut) {
                              : extreme > 5.0 / 6 ? 0.96 + 0.02 * t
                                                  : 0.02 + 0.96 * t;
       }
-      for (const CubeTriangle& a : triangles)
-        for (const CubeTriangle& b : triangles) {
+      for (const CellTriangle& a : triangles)
+        for (const CellTriangle& b : triangles) {
           if (a == b) continue;
           const Triangle solid{cut[b[0]], cut[b[1]], cut[b[2]]};
           for (int i = 0; i < 3; ++i) {
@@ -141,7 +141,7 @@ TEST(MarchingCubes, NeverIntersectThemselvesWhereverTheEdgesAreCut) {
 
 TEST(MarchingCubes, FaceTheAir) {
   for (int corner = 0; corner < 8; ++corner) {
-    const auto triangles = CubeCases::table()[1 << corner];
+    const auto triangles = CaseTable::cube()[1 << corner];
     ASSERT_EQ(triangles.size(), 1u);
     Triangle t;
     for (int i = 0; i < 3; ++i) {

@@ -1,4 +1,5 @@
-/// The searched case table of marching cubes.
+/// The searched case tables of marching cubes: for cubes, and for the pyramids and tetrahedra of cells beside finer
+/// ones.
 #pragma once
 
 #include <array>
@@ -28,32 +29,49 @@ inline constexpr int kCubeEdges = 12;
   return {axis, from};
 }
 
-/// True when both edges touch one face of the cube: a segment between them would lie in that face.
-[[nodiscard]] bool share_cube_face(int edge_a, int edge_b) noexcept;
+/// The corners of a face of the unit cube, counter-clockwise seen from outside; side 0 is the low one.
+[[nodiscard]] std::array<IVec3, 4> cube_face(int axis, int side) noexcept;
 
-/// A triangle whose corners lie on three edges of the cube, counter-clockwise seen from the air.
-using CubeTriangle = std::array<std::uint8_t, 3>;
+/// A convex solid whose corners are rock or air.
+struct CellShape {
+  std::vector<Vec3> corners;
+  std::vector<std::array<std::uint8_t, 2>> edges;  ///< Corners.
+  std::vector<std::vector<std::uint8_t>> faces;    ///< Corners, counter-clockwise seen from outside.
 
-/// The triangles of all 256 cases; bit x + 2y + 4z of a case is set when that corner is rock.
+  /// True when both edges bound one face: a segment between them would lie in that face.
+  [[nodiscard]] bool share_face(int edge_a, int edge_b) const noexcept;
+
+  [[nodiscard]] static CellShape cube();         ///< Corner x + 2y + 4z; edges as cube_edge.
+  [[nodiscard]] static CellShape pyramid();      ///< Corners 0 to 3: a unit square seen from below; 4: half a unit above.
+  [[nodiscard]] static CellShape tetrahedron();  ///< Corners 0, 1, 2 counter-clockwise seen from outside.
+};
+
+/// A triangle whose corners lie on three edges of the shape, counter-clockwise seen from the air.
+using CellTriangle = std::array<std::uint8_t, 3>;
+
+/// The triangles of all cases of a shape; bit i of a case is set when corner i is rock.
 ///
-/// Each face of the cube joins its crossing edges by the face's corners alone, and where a face is ambiguous its rock
-/// corners are cut off one by one, so that two cells that share a face draw the same segments on it. The segments form
-/// loops; each loop is filled by the triangulation of least area through the edges' middles among those of which no
-/// diagonal lies in a face of the cube. So each face carries its segments and nothing else, and the surfaces of
-/// neighbouring cells close. That the triangles of one cell never intersect is tested for random places on the edges.
-/// Method: Lorensen and Cline 1987, with a table that is searched, not drawn.
-class CubeCases {
+/// Each face joins its crossing edges by the face's corners alone, and where a square face is ambiguous its rock corners
+/// are cut off one by one, so that two cells that share a face draw the same segments on it. The segments form loops;
+/// each loop is filled by the triangulation of least area through the edges' middles among those of which no diagonal
+/// lies in a face. So each face carries its segments and nothing else, and the surfaces of neighbouring cells close.
+/// That the triangles of one cell never intersect is tested for random places on the edges. Method: Lorensen and
+/// Cline 1987, with tables that are searched, not drawn.
+class CaseTable {
  public:
-  /// The one table; built on first use.
-  [[nodiscard]] static const CubeCases& table();
-  [[nodiscard]] std::span<const CubeTriangle> operator[](int cube_case) const noexcept {
-    return {triangles_.data() + first_[cube_case], triangles_.data() + first_[cube_case + 1]};
+  explicit CaseTable(const CellShape& shape);
+  [[nodiscard]] std::span<const CellTriangle> operator[](int cell_case) const noexcept {
+    return {triangles_.data() + first_[cell_case], triangles_.data() + first_[cell_case + 1]};
   }
 
+  /// The one table of each shape; built on first use.
+  [[nodiscard]] static const CaseTable& cube();
+  [[nodiscard]] static const CaseTable& pyramid();
+  [[nodiscard]] static const CaseTable& tetrahedron();
+
  private:
-  CubeCases();
-  std::vector<CubeTriangle> triangles_;
-  std::array<std::uint16_t, 257> first_{};
+  std::vector<CellTriangle> triangles_;
+  std::vector<std::uint16_t> first_;
 };
 
 }  // namespace outcrop

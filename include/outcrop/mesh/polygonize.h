@@ -1,7 +1,10 @@
 /// From fields to triangle meshes.
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <filesystem>
+#include <span>
 
 #include "outcrop/core/task.h"
 #include "outcrop/mesh/triangle_mesh.h"
@@ -21,9 +24,16 @@ enum class Parts {
   Largest,   ///< The part with the largest volume.
 };
 
+/// Cells may be up to 2^8 times as long as the finest.
+inline constexpr int kMaxLevels = 8;
+
 struct PolygonizeOptions {
-  Box region;                ///< World, finite, not empty. Its lattice starts at lo; hi is moved out to whole cells.
-  double resolution = 0.25;  ///< Cell edge in metres, > 0.
+  /// World, finite, not empty. Its lattice starts at lo; hi is moved out to whole cells. With a tolerance, hi.z alone is,
+  /// and to whole coarsest cells, while cells shrink sideways by up to a sixteenth to end at hi.x and hi.y.
+  Box region;
+  double resolution = 0.25;  ///< Edge of the finest cells in metres, > 0.
+  double tolerance = 0.0;    ///< Metres, ≥ 0: how far triangles may lie off the surface where cells are not finest; 0: all are.
+  int levels = 5;            ///< Cells are up to 2^levels times as long as the finest, 0 to 8; with a tolerance.
   Border border = Border::Open;
   Parts parts = Parts::All;
   bool keep_voids = false;
@@ -38,6 +48,7 @@ struct PolygonizeStatistics {
   std::size_t evaluations = 0;    ///< Field values computed.
   std::size_t parts_removed = 0;  ///< Floating parts.
   std::size_t voids_removed = 0;
+  std::array<std::size_t, kMaxLevels + 1> bricks{};  ///< Of 8³ cells that the surface crosses, by level; 0 is the finest.
 };
 
 struct PolygonizeResult {
@@ -46,15 +57,59 @@ struct PolygonizeResult {
 };
 
 /// The zero surface of `field` in a region: closed but for the region's border (Border::Open), manifold, oriented
-/// outwards.
+/// outwards, free of intersections with itself.
 ///
 /// Marching cubes on one integer lattice with searched tables, over bricks of 8³ cells that `bound` cannot exclude and
-/// in which the field is narrowed. Vertices lie on the surface to within resolution / 1000 where f is smooth, and to
-/// within resolution / 50 where it passes that close to a node of the lattice, so that no triangle degenerates. The
-/// mesh's origin is region.lo. The same bytes for any number of threads. Cost: O(cells crossed) evaluations; memory
-/// O(triangles).
+/// in which the field is narrowed. With a tolerance the bricks form an octree, whose neighbours differ by one level at
+/// most; cells beside finer ones are coned from their centres, so there is no crack, skirt or T-junction. Where bricks
+/// are split depends on the field and the lattice alone: docs/decisions/mesher.md. Features thinner than a cell show
+/// where a node of the lattice falls into them. Vertices lie on the surface to within a thousandth of their cell where f
+/// is smooth, and to within a fiftieth where it passes that close to a node of the lattice, so that no triangle
+/// degenerates. The mesh's origin is region.lo. The same bytes for any number of threads. Cost: O(cells crossed)
+/// evaluations; memory O(triangles).
 /// @throws ParameterError also when the field's bound or narrow contradict its values; Cancelled.
 [[nodiscard]] PolygonizeResult polygonize(const Field& field, const PolygonizeOptions& options, const Task& task = {});
+
+/// What a mesh will have, told before its first piece.
+struct MeshTotals {
+  Vec3 origin{0.0};
+  std::size_t vertices = 0, triangles = 0;
+  bool normals = false, labels = false;
+  Label largest_label = 0;
+};
+
+/// A stretch of a mesh. Joined in the order in which they come, pieces make the whole.
+struct MeshPiece {
+  std::span<const Vec3f> positions;          ///< Relative to the mesh's origin.
+  std::span<const Vec3f> normals;            ///< One a vertex, or empty.
+  std::span<const Label> labels;             ///< One a vertex, or empty.
+  std::span<const std::uint32_t> numbers;    ///< Of each vertex in the whole mesh.
+  std::uint32_t first_number = 0;            ///< Vertices of lower numbers came with earlier pieces; others are in order.
+  std::span<const std::array<std::uint32_t, 3>> triangles;  ///< Of the piece's vertices.
+};
+
+/// Takes a mesh piece by piece.
+class MeshSink {
+ public:
+  virtual ~MeshSink() = default;
+  virtual void begin(const MeshTotals& totals) = 0;
+  virtual void add(const MeshPiece& piece) = 0;
+  virtual void end() {}
+};
+
+struct PieceOptions {
+  /// Octree cells of 64³ finest cells, or of twice the coarsest brick, that are meshed at a time; at least 1. Decides
+  /// memory and load balance, not the mesh.
+  std::size_t chunks = 256;
+  /// A file beside which what is meshed waits on disk until it is known which parts float; empty: in memory.
+  std::filesystem::path spool;
+};
+
+/// The same mesh, byte for byte, as polygonize, handed to `sinks` piece by piece: memory O(piece + region's border +
+/// parts), with some 100 bytes a chunk.
+/// @throws SystemError also when the disk is full.
+PolygonizeStatistics polygonize_pieces(const Field& field, const PolygonizeOptions& options, const PieceOptions& pieces,
+                                       std::span<MeshSink* const> sinks, const Task& task = {});
 
 /// Surface cells, triangles and bytes to expect, from bounds and about a thousand sampled bricks: within some 15 %. For
 /// --dry-run and memory limits.

@@ -1,0 +1,62 @@
+/// Which bricks stand where: an octree in which neighbours differ by one level at most.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "flat_map.h"
+#include "lattice.h"
+
+namespace outcrop::meshing {
+
+/// A brick's place: cells of 2^level lattice cells.
+struct BrickPlace {
+  IVec3 index{0};
+  int level = 0;
+};
+
+/// The 18 neighbours of a cell that share a face or an edge with it.
+[[nodiscard]] const std::array<IVec3, 18>& face_and_edge_neighbours();
+
+/// Where finer cells lie around a brick: one flag for each cell of the brick and of the layer around it.
+class FinerCells {
+ public:
+  [[nodiscard]] bool any() const noexcept { return any_; }
+  /// @param cell  −1 to 8 an axis, in cells of the brick.
+  [[nodiscard]] bool at(const IVec3& cell) const noexcept { return finer_[place(cell)] != 0; }
+  void mark(const IVec3& lo, const IVec3& hi) noexcept;  ///< Cells lo to hi − 1.
+
+ private:
+  static constexpr int place(const IVec3& c) noexcept { return (c.z + 1) * 100 + (c.y + 1) * 10 + c.x + 1; }
+  std::array<std::uint8_t, 1000> finer_{};
+  bool any_ = false;
+};
+
+/// Leaves are bricks that may hold surface; where nothing stands there is none.
+class BrickTree {
+ public:
+  /// @param leaves  Disjoint.
+  void add(const std::vector<BrickPlace>& leaves);
+
+  /// Splits leaves until no two that share a face or an edge differ by more than one level, and, to the same end, no
+  /// leaf reaches into the neighbourhood of a split cell half its size. What a leaf becomes depends on leaves less than
+  /// 2^coarsest bricks away.
+  void balance(const Lattice& lattice);
+
+  [[nodiscard]] bool is_leaf(const BrickPlace& at) const { return state(at) == State::Leaf; }
+  [[nodiscard]] bool is_split(const BrickPlace& at) const { return state(at) == State::Split; }
+  [[nodiscard]] FinerCells finer_around(const BrickPlace& brick) const;
+
+ private:
+  enum class State : std::uint8_t { None, Leaf, Split };
+  [[nodiscard]] static std::uint64_t key(const BrickPlace& at) noexcept;
+  [[nodiscard]] State state(const BrickPlace& at) const;
+  void mark_parents_split(BrickPlace at);
+  void split_down_to(const Lattice& lattice, const BrickPlace& at);
+
+  FlatMap<State> cells_;
+  std::array<std::vector<IVec3>, kMaxLevels + 1> split_;  ///< Up to the coarsest level of a leaf.
+};
+
+}  // namespace outcrop::meshing

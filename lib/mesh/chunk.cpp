@@ -1,0 +1,245 @@
+#include "chunk.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include "outcrop/core/error.h"
+#include "outcrop/mesh/marching_cubes.h"
+
+namespace outcrop::meshing {
+namespace {
+
+/// The case table with edges as offsets into a brick's slots: axis · 729 + node of the edge's start.
+struct SlotTriangle {
+  std::array<std::uint16_t, 3> slot;
+};
+struct SlotCases {
+  std::vector<SlotTriangle> triangles;
+  std::array<std::uint16_t, 257> first{};
+
+  SlotCases() {
+    for (int c = 0; c < 256; ++c) {
+      first[c] = static_cast<std::uint16_t>(triangles.size());
+      for (const CellTriangle& t : CaseTable::cube()[c]) {
+        SlotTriangle& slots = triangles.emplace_back();
+        for (int i = 0; i < 3; ++i) {
+          const CubeEdge e = cube_edge(t[i]);
+          slots.slot[i] = static_cast<std::uint16_t>(e.axis * kNodes + e.from.x + 9 * e.from.y + 81 * e.from.z);
+        }
+      }
+    }
+    first[256] = static_cast<std::uint16_t>(triangles.size());
+  }
+};
+
+/// Twice the middle's coordinates and the direction: no two edges of a mesh share both, whatever their lengths.
+constexpr int kKeyBits = 19, kDirectionBits = 5;
+
+std::uint64_t edge_key(const IVec3& from, const IVec3& along) {
+  const IVec3 middle = 2 * from + along;
+  std::uint64_t key = 0;
+  for (int axis = 2; axis >= 0; --axis) key = key << kKeyBits | static_cast<std::uint64_t>(middle[axis]);
+  const auto sign = [](int d) { return d > 0 ? 2 : d < 0 ? 0 : 1; };
+  const int direction = sign(along.x) + 3 * sign(along.y) + 9 * sign(along.z);
+  return key << kDirectionBits | static_cast<std::uint64_t>(direction);
+}
+
+IVec3 twice_middle(std::uint64_t key) {
+  key >>= kDirectionBits;
+  IVec3 middle;
+  for (int axis = 0; axis < 3; ++axis, key >>= kKeyBits) middle[axis] = static_cast<int>(key & ((1u << kKeyBits) - 1));
+  return middle;
+}
+
+}  // namespace
+
+int quarters_around(const Lattice& lattice, std::uint64_t key) noexcept {
+  const IVec3 middle = twice_middle(key);
+  int quarters = 4;
+  for (int axis = 0; axis < 3; ++axis)
+    if (middle[axis] == 0 || middle[axis] == 2 * lattice.cells[axis]) quarters /= 2;
+  return quarters;
+}
+
+Vec3 edge_middle(const Lattice& lattice, std::uint64_t key) noexcept {
+  return lattice.place(0.5 * Vec3(twice_middle(key)));
+}
+
+void contradiction(const Vec3& where) {
+  char place[96];
+  std::snprintf(place, sizeof place, "(%.9g, %.9g, %.9g)", where.x, where.y, where.z);
+  throw ParameterError(
+      std::string("field: expected bound and narrow that agree with its values, got boxes that disagree near ") + place);
+}
+
+ChunkBuilder::ChunkBuilder(const Lattice& lattice, const PolygonizeOptions& options, const BrickTree* tree,
+                           const Task& task)
+    : lattice_(lattice), options_(options), tree_(tree), task_(task) {}
+
+Chunk ChunkBuilder::build(const Cell& cell, int level) {
+  chunk_ = {};
+  shared_.clear();
+  descend(cell, level);
+  close_border();
+  fill_missing_normals();
+  return std::move(chunk_);
+}
+
+void ChunkBuilder::descend(const Cell& cell, int level) {
+  if (!tree_) {
+    if (level == 0) return visit(cell, level);
+    for (const Cell& child : split(lattice_, cell, level)) descend(child, level - 1);
+  } else if (tree_->is_split({cell.index, level})) {
+    const FieldPtr field = cell.field->narrow(lattice_.box(cell.index, level));
+    for (int octant = 0; octant < 8; ++octant) descend({child_index(cell.index, octant), field}, level - 1);
+  } else if (tree_->is_leaf({cell.index, level})) {
+    // What balance made is not known to hold surface.
+    if (may_hold_surface(*cell.field, lattice_.box(cell.index, level))) visit(cell, level);
+  }
+}
+
+void ChunkBuilder::visit(const Cell& cell, int level) {
+  task_.check();
+  const FieldPtr field = cell.field->narrow(lattice_.box(cell.index, level));
+  Brick brick(lattice_, cell.index, level);
+  chunk_.evaluations += BrickValues::count(brick);
+  bool mixed = values_.sample(lattice_, *field, brick), transition = false;
+  if (tree_ && level > 0) {
+    const FinerCells finer = tree_->finer_around({cell.index, level});
+    transition = finer.any();
+    if (transition) {
+      mixed |= transition_.sample(lattice_, *field, brick, values_, finer);
+      chunk_.evaluations += transition_.evaluations();
+    }
+  }
+  if (mixed) mesh(brick, *field, transition);
+}
+
+void ChunkBuilder::mesh(const Brick& brick, const Field& field, bool transition) {
+  ++chunk_.bricks[brick.level];
+  crossings_.clear();
+  find_vertices(brick, transition);
+  if (transition) emit_transition(brick);
+  emit_cells(brick, transition);
+  place(field);
+}
+
+void ChunkBuilder::find_vertices(const Brick& brick, bool transition) {
+  const IVec3 first = brick.first(), n = brick.cells;
+  const int edge = 1 << brick.level;
+  brick.for_each_row([&](int axis, int j, int k, unsigned bits) {
+    if (transition) bits &= ~transition_.divided(axis, j, k);
+    const int row = 9 * j + 81 * k;
+    const int planes = (axis != 1 && (j == 0 || j == n.y)) + (axis != 2 && (k == 0 || k == n.z));
+    for (; bits != 0; bits &= bits - 1) {
+      const int i = std::countr_zero(bits), node = i + row;
+      IVec3 along(0);
+      along[axis] = edge;
+      const IVec3 from = first + edge * IVec3(i, j, k);
+      const double a = values_.at(node), b = values_.at(node + kStride[axis]);
+      const int sides = planes + (axis != 0 && (i == 0 || i == n.x));
+      vertex_[axis * kNodes + node] = sides == 0 ? vertex_on(from, along, a, b)
+                                                 : shared_vertex_on(from, along, a, b, sides);
+    }
+  });
+}
+
+std::uint32_t ChunkBuilder::vertex_on(const IVec3& from, const IVec3& along, double f_a, double f_b) {
+  const auto vertex = static_cast<std::uint32_t>(chunk_.positions.size() + crossings_.size());
+  crossings_.push_back({.from = from, .along = along, .f_a = f_a, .f_b = f_b});
+  return vertex;
+}
+
+std::uint32_t ChunkBuilder::shared_vertex_on(const IVec3& from, const IVec3& along, double f_a, double f_b,
+                                             int planes) {
+  Shared& shared = shared_[edge_key(from, along)];
+  if (shared.quarters == 0) shared.vertex = vertex_on(from, along, f_a, f_b);
+  shared.quarters += planes == 1 ? 2 : 1;
+  return shared.vertex;
+}
+
+void ChunkBuilder::emit_cells(const Brick& brick, bool transition) {
+  static const SlotCases cases;
+  brick.for_each_mixed_cell([&](int node, int cube_case) {
+    if (transition && transition_.is_coned(node)) return;
+    ++chunk_.cells;
+    for (int i = cases.first[cube_case]; i < cases.first[cube_case + 1]; ++i) {
+      const auto& slot = cases.triangles[i].slot;
+      chunk_.triangles.push_back({vertex_[slot[0] + node], vertex_[slot[1] + node], vertex_[slot[2] + node]});
+    }
+  });
+}
+
+void ChunkBuilder::emit_transition(const Brick& brick) {
+  chunk_.cells += transition_.mixed_cells();
+  half_vertices_.clear();
+  transition_.for_each_triangle([&](const HalfEdge& a, const HalfEdge& b, const HalfEdge& c) {
+    const std::uint32_t u = half_vertex(brick, a), v = half_vertex(brick, b), w = half_vertex(brick, c);
+    chunk_.triangles.push_back({u, v, w});
+  });
+}
+
+std::uint32_t ChunkBuilder::half_vertex(const Brick& brick, const HalfEdge& edge) {
+  const IVec3 a = half_place(edge[0]), b = half_place(edge[1]);
+  const IVec3 d = b - a;
+  if (d.x + d.y + d.z == 2 && (d.x == 2 || d.y == 2 || d.z == 2)) {  // An edge of the cell.
+    const int axis = d.x == 2 ? 0 : d.y == 2 ? 1 : 2;
+    return vertex_[axis * kNodes + a.x / 2 + 9 * (a.y / 2) + 81 * (a.z / 2)];
+  }
+  std::uint32_t& vertex = half_vertices_[static_cast<std::uint64_t>(edge[0]) << 16 | static_cast<std::uint64_t>(edge[1])];
+  if (vertex != 0) return vertex - 1;
+  int planes = 0;
+  for (int axis = 0; axis < 3; ++axis)
+    planes += a[axis] == b[axis] && (a[axis] == 0 || a[axis] == 2 * brick.cells[axis]);
+  const int half = (1 << brick.level) / 2;
+  const IVec3 from = brick.first() + half * a, along = half * d;
+  const double f_a = transition_.at(edge[0]), f_b = transition_.at(edge[1]);
+  const std::uint32_t made =
+      planes == 0 ? vertex_on(from, along, f_a, f_b) : shared_vertex_on(from, along, f_a, f_b, planes);
+  vertex = made + 1;
+  return made;
+}
+
+void ChunkBuilder::place(const Field& field) {
+  const std::size_t n = crossings_.size(), start = chunk_.positions.size();
+  chunk_.evaluations += solver_.solve(lattice_, field, crossings_, options_.normals);
+  for (const Crossing& c : crossings_) chunk_.positions.push_back(lattice_.local(c.index()));
+  for (const Vec3& g : solver_.gradients()) {
+    const double length = glm::length(g);
+    // No gradient, no normal: left zero here and taken from the triangles later.
+    chunk_.normals.push_back(length > 0.0 && std::isfinite(length) ? Vec3f(g / length) : Vec3f(0.0f));
+  }
+  if (options_.labels) {
+    chunk_.labels.resize(start + n);
+    field.labels(solver_.places(), std::span(chunk_.labels).subspan(start));
+  }
+}
+
+void ChunkBuilder::close_border() {
+  shared_.for_each([&](std::uint64_t key, const Shared& shared) {
+    if (shared.quarters != quarters_around(lattice_, key))
+      chunk_.border.push_back({key, shared.vertex, shared.quarters});
+  });
+  std::sort(chunk_.border.begin(), chunk_.border.end(),
+            [](const BorderVertex& a, const BorderVertex& b) { return a.vertex < b.vertex; });
+}
+
+void ChunkBuilder::fill_missing_normals() {
+  const auto& normals = chunk_.normals;
+  if (std::find(normals.begin(), normals.end(), Vec3f(0.0f)) == normals.end()) return;
+  // The mean direction of the vertex's triangles in this chunk, weighted by area.
+  std::vector<Vec3> sums(normals.size(), Vec3(0.0));
+  for (const Triangle& t : chunk_.triangles) {
+    const Vec3 a(chunk_.positions[t[0]]), b(chunk_.positions[t[1]]), c(chunk_.positions[t[2]]);
+    for (const std::uint32_t v : t) sums[v] += glm::cross(b - a, c - a);
+  }
+  for (std::size_t v = 0; v < sums.size(); ++v) {
+    if (chunk_.normals[v] != Vec3f(0.0f)) continue;
+    const double length = glm::length(sums[v]);
+    chunk_.normals[v] = length > 0.0 ? Vec3f(sums[v] / length) : Vec3f(0, 0, 1);
+  }
+}
+
+}  // namespace outcrop::meshing

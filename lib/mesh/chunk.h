@@ -1,0 +1,83 @@
+/// One unit of work: the surface in one octree cell.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "brick_tree.h"
+#include "flat_map.h"
+#include "lattice.h"
+#include "outcrop/core/task.h"
+#include "roots.h"
+#include "transition.h"
+
+namespace outcrop::meshing {
+
+using Triangle = std::array<std::uint32_t, 3>;
+
+/// A vertex on the border of a chunk. Its key is the edge that it lies on; chunks that share the edge agree on both.
+struct BorderVertex {
+  std::uint64_t key = 0;
+  std::uint32_t vertex = 0;  ///< In the chunk.
+  std::uint8_t quarters = 0; ///< How much of a turn around the edge the chunk fills.
+};
+
+/// The surface in one octree cell; vertices and triangles follow the bricks in Morton order.
+struct Chunk {
+  std::vector<Vec3f> positions, normals;
+  std::vector<Label> labels;
+  std::vector<Triangle> triangles;  ///< Of the chunk's own vertices.
+  std::vector<BorderVertex> border; ///< In the order of their vertices.
+  std::size_t cells = 0, evaluations = 0;
+  std::array<std::size_t, kMaxLevels + 1> bricks{};  ///< With surface, by level.
+};
+
+/// Quarter turns around an edge inside the lattice; half as many for each side of the lattice that it lies on.
+[[nodiscard]] int quarters_around(const Lattice& lattice, std::uint64_t key) noexcept;
+/// The world place of an edge's middle.
+[[nodiscard]] Vec3 edge_middle(const Lattice& lattice, std::uint64_t key) noexcept;
+/// Throws the ParameterError that says that bound or narrow contradict the field's values near a place.
+[[noreturn]] void contradiction(const Vec3& where);
+
+/// Meshes the bricks of a tree's cell at `level`, narrowing on the way down.
+class ChunkBuilder {
+ public:
+  /// @param tree  Null: uniform cells.
+  ChunkBuilder(const Lattice& lattice, const PolygonizeOptions& options, const BrickTree* tree, const Task& task);
+  /// @throws ParameterError when two bricks disagree about an edge; Cancelled.
+  [[nodiscard]] Chunk build(const Cell& cell, int level);
+
+ private:
+  struct Shared {
+    std::uint32_t vertex = 0;
+    std::uint8_t quarters = 0;
+  };
+  void descend(const Cell& cell, int level);
+  void visit(const Cell& cell, int level);
+  void mesh(const Brick& brick, const Field& field, bool transition);
+  void find_vertices(const Brick& brick, bool transition);
+  void emit_cells(const Brick& brick, bool transition);
+  void emit_transition(const Brick& brick);
+  [[nodiscard]] std::uint32_t half_vertex(const Brick& brick, const HalfEdge& edge);
+  std::uint32_t vertex_on(const IVec3& from, const IVec3& along, double f_a, double f_b);
+  std::uint32_t shared_vertex_on(const IVec3& from, const IVec3& along, double f_a, double f_b, int planes);
+  void place(const Field& field);
+  void close_border();
+  void fill_missing_normals();
+
+  const Lattice& lattice_;
+  const PolygonizeOptions& options_;
+  const BrickTree* tree_;
+  const Task& task_;
+  Chunk chunk_;
+  BrickValues values_;
+  TransitionCells transition_;
+  RootSolver solver_;
+  std::vector<Crossing> crossings_;
+  FlatMap<Shared> shared_;              ///< Vertices on faces of bricks, by edge.
+  FlatMap<std::uint32_t> half_vertices_;  ///< Of one brick, by half edge.
+  std::array<std::uint32_t, 3 * kNodes> vertex_{};
+};
+
+}  // namespace outcrop::meshing

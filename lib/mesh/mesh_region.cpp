@@ -1,0 +1,163 @@
+#include "mesh_region.h"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "assembly.h"
+#include "brick_tree.h"
+#include "chunk.h"
+#include "outcrop/core/parallel.h"
+
+namespace outcrop::meshing {
+namespace {
+
+/// Octree cells of 2³ levels of bricks, 64³ lattice cells, hold about ten thousand triangles.
+constexpr int kChunkLevel = 3;
+/// Small regions are cut finer, so that there is work for many threads.
+constexpr int kLevelsAboveChunks = 3;
+
+/// The trees of chunks, made when they are needed and dropped when nobody will ask again.
+///
+/// What balance makes of a chunk's bricks, and of those that touch them, depends on its 26 neighbours and nothing else:
+/// a chunk is twice as long as the coarsest brick.
+class Forest {
+ public:
+  Forest(const Lattice& lattice, std::vector<Cell>& cells, int level, double tolerance, const ForcedSplits& forced)
+      : lattice_(lattice), cells_(cells), level_(level), tolerance_(tolerance), forced_(forced), trees_(cells.size()) {
+    for (std::uint32_t i = 0; i < cells.size(); ++i) number_[key(cells[i].index)] = i;
+    for (std::uint32_t i = 0; i < cells.size(); ++i) waiting_.push_back(around(i).size());
+  }
+
+  /// Makes what chunks first to last − 1 need. @return field values computed.
+  std::size_t prepare(std::size_t first, std::size_t last, const Task& task) {
+    std::vector<std::uint32_t> missing;
+    for (std::size_t i = first; i < last; ++i)
+      for (const std::uint32_t n : around(i))
+        if (!made_[n]) {
+          made_[n] = 1;
+          missing.push_back(n);
+        }
+    const auto evaluations = parallel_map(
+        missing.size(),
+        [&](std::size_t i) {
+          Refinement refinement = refine(lattice_, cells_[missing[i]], level_, tolerance_, forced_);
+          trees_[missing[i]] = std::move(refinement.leaves);
+          return refinement.evaluations;
+        },
+        task);
+    std::size_t sum = 0;
+    for (const std::size_t n : evaluations) sum += n;
+    return sum;
+  }
+  [[nodiscard]] BrickTree balanced(std::size_t chunk) const {
+    BrickTree tree;
+    for (const std::uint32_t n : around(chunk)) tree.add(trees_[n]);
+    tree.balance(lattice_);
+    return tree;
+  }
+  void release(std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i)
+      for (const std::uint32_t n : around(i))
+        if (--waiting_[n] == 0) trees_[n] = {};
+  }
+
+ private:
+  static std::uint64_t key(const IVec3& index) {
+    const auto part = [](int i) { return static_cast<std::uint64_t>(i + 1); };
+    return part(index.z) << 40 | part(index.y) << 20 | part(index.x);
+  }
+  /// The chunk and its neighbours.
+  [[nodiscard]] std::vector<std::uint32_t> around(std::size_t chunk) const {
+    std::vector<std::uint32_t> list;
+    for (int i = 0; i < 27; ++i) {
+      const auto* n = number_.find(key(cells_[chunk].index + IVec3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1)));
+      if (n) list.push_back(*n);
+    }
+    return list;
+  }
+
+  const Lattice& lattice_;
+  const std::vector<Cell>& cells_;
+  int level_;
+  double tolerance_;
+  const ForcedSplits& forced_;
+  FlatMap<std::uint32_t> number_;
+  std::vector<std::vector<BrickPlace>> trees_;
+  std::vector<std::size_t> waiting_;
+  std::vector<char> made_ = std::vector<char>(trees_.size(), 0);
+};
+
+}  // namespace
+
+int chunk_level(const Lattice& lattice) noexcept {
+  const int root = root_level(lattice);
+  if (lattice.coarsest == 0) return std::clamp(root - kLevelsAboveChunks, 0, kChunkLevel);
+  return std::min(root, std::max(kChunkLevel, lattice.coarsest + 1));
+}
+
+std::vector<Cell> chunk_cells(const Field& field, const Lattice& lattice, const Task& task) {
+  std::vector<Cell> cells = root_cells(lattice, field);
+  for (int level = root_level(lattice); level > chunk_level(lattice); --level) {
+    const auto parts = parallel_map(
+        cells.size(), [&](std::size_t i) { return split(lattice, cells[i], level); }, task);
+    cells.clear();
+    for (const auto& part : parts) cells.insert(cells.end(), part.begin(), part.end());
+  }
+  return cells;
+}
+
+PolygonizeStatistics mesh_region(const Field& field, const Lattice& lattice, const PolygonizeOptions& options,
+                                 const PieceOptions& pieces, std::span<MeshSink* const> sinks, const Task& task,
+                                 const ForcedSplits& forced) {
+  const int level = chunk_level(lattice);
+  std::vector<Cell> cells = chunk_cells(field, lattice, task);
+  const bool uniform = lattice.coarsest == 0;
+  const AssemblyNeeds needs(options);
+  Assembly assembly(lattice, options, pieces.spool.empty() ? memory_store() : disk_store(pieces.spool));
+  Forest forest(lattice, cells, level, options.tolerance, forced);
+  task.begin("meshing", cells.size());
+  for (std::size_t first = 0; first < cells.size(); first += pieces.chunks) {
+    const std::size_t last = std::min(first + pieces.chunks, cells.size());
+    if (!uniform) assembly.count_evaluations(forest.prepare(first, last, task));
+    auto made = parallel_map(
+        last - first,
+        [&](std::size_t i) {
+          BrickTree tree;
+          if (!uniform) tree = forest.balanced(first + i);
+          Chunk chunk = ChunkBuilder(lattice, options, uniform ? nullptr : &tree, task).build(cells[first + i], level);
+          if (uniform) cells[first + i].field.reset();
+          ChunkSummary summary = summarise(chunk, lattice, needs);
+          task.advance();
+          return std::pair(std::move(chunk), std::move(summary));
+        },
+        task);
+    for (auto& [chunk, summary] : made) assembly.add(std::move(chunk), std::move(summary));
+    forest.release(first, last);
+  }
+  cells.clear();
+  assembly.finish(field, task);
+  assembly.emit(sinks, task);
+  return assembly.statistics();
+}
+
+void MeshCollector::begin(const MeshTotals& totals) {
+  mesh_.origin = totals.origin;
+  mesh_.positions.reserve(totals.vertices);
+  if (totals.normals) mesh_.normals.reserve(totals.vertices);
+  if (totals.labels) mesh_.labels.reserve(totals.vertices);
+  mesh_.triangles.reserve(totals.triangles);
+}
+
+void MeshCollector::add(const MeshPiece& piece) {
+  for (std::size_t v = 0; v < piece.positions.size(); ++v) {
+    if (piece.numbers[v] < piece.first_number) continue;
+    mesh_.positions.push_back(piece.positions[v]);
+    if (!piece.normals.empty()) mesh_.normals.push_back(piece.normals[v]);
+    if (!piece.labels.empty()) mesh_.labels.push_back(piece.labels[v]);
+  }
+  for (const Triangle& t : piece.triangles)
+    mesh_.triangles.push_back({piece.numbers[t[0]], piece.numbers[t[1]], piece.numbers[t[2]]});
+}
+
+}  // namespace outcrop::meshing

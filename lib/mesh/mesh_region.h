@@ -1,0 +1,35 @@
+/// The way from a field to a mesh, chunk by chunk.
+#pragma once
+
+#include <span>
+
+#include "lattice.h"
+#include "outcrop/core/task.h"
+#include "outcrop/mesh/polygonize.h"
+#include "refine.h"
+
+namespace outcrop::meshing {
+
+/// Meshes a lattice and hands the result to `sinks`; `forced` splits bricks in the place of the field's error.
+/// @throws as polygonize_pieces.
+PolygonizeStatistics mesh_region(const Field& field, const Lattice& lattice, const PolygonizeOptions& options,
+                                 const PieceOptions& pieces, std::span<MeshSink* const> sinks, const Task& task,
+                                 const ForcedSplits& forced = {});
+
+/// Octree cells of this level are the units of work.
+[[nodiscard]] int chunk_level(const Lattice& lattice) noexcept;
+/// Those that may hold surface, in Morton order.
+[[nodiscard]] std::vector<Cell> chunk_cells(const Field& field, const Lattice& lattice, const Task& task);
+
+/// Collects a mesh in memory.
+class MeshCollector final : public MeshSink {
+ public:
+  void begin(const MeshTotals& totals) override;
+  void add(const MeshPiece& piece) override;
+  [[nodiscard]] TriangleMesh take() { return std::move(mesh_); }
+
+ private:
+  TriangleMesh mesh_;
+};
+
+}  // namespace outcrop::meshing

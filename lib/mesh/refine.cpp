@@ -1,0 +1,173 @@
+#include "refine.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "outcrop/mesh/marching_cubes.h"
+
+namespace outcrop::meshing {
+namespace {
+
+/// A side of a triangle is cut into up to this many parts to look for what lies off it.
+constexpr int kMostSubdivisions = 4;
+/// Below this share of the steepest slope that values along the lattice show, a cell's slope says nothing.
+constexpr double kLeastSlope = 0.1;
+
+}  // namespace
+
+bool BrickError::bends(double tolerance, const Lattice& lattice, const Brick& brick, const BrickValues& values) const {
+  const IVec3 n = brick.cells;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int stride = kStride[axis];
+    const double edge = lattice.step[axis] * (1 << brick.level);
+    const IVec3 first(axis == 0, axis == 1, axis == 2), last = n - first;
+    for (int k = first.z; k <= last.z; ++k)
+      for (int j = first.y; j <= last.y; ++j)
+        for (int i = first.x; i <= last.x; ++i) {
+          const int node = i + 9 * j + 81 * k;
+          const double a = values.at(node - stride), b = values.at(node), c = values.at(node + stride);
+          if ((a < 0.0) != (b < 0.0) || (b < 0.0) != (c < 0.0)) continue;
+          // Between nodes a parabola goes an eighth, a crease up to a quarter of the second difference beyond them.
+          const double hidden = 0.25 * std::abs(a - 2.0 * b + c) - std::min({std::abs(a), std::abs(b), std::abs(c)});
+          if (hidden * edge > tolerance * std::max(std::abs(b - a), std::abs(c - b))) return true;
+        }
+  }
+  return false;
+}
+
+void BrickError::reconstruct(const Lattice& lattice, const Brick& brick, const BrickValues& values) {
+  vertices_.clear();
+  faces_.clear();
+  const Vec3 first(brick.first());
+  const double stride = 1 << brick.level;
+  brick.for_each_row([&](int axis, int j, int k, unsigned crossing) {
+    for (unsigned bits = crossing & ((1u << (brick.cells.x + (axis != 0))) - 1); bits != 0; bits &= bits - 1) {
+      const int i = std::countr_zero(bits), node = i + 9 * j + 81 * k;
+      const double a = values.at(node), b = values.at(node + kStride[axis]);
+      Vec3 at(i, j, k);
+      at[axis] += a / (a - b);
+      vertex_of_edge_[axis * kNodes + node] = static_cast<int>(vertices_.size());
+      vertices_.push_back({first + stride * at});
+    }
+  });
+  brick.for_each_mixed_cell([&](int node, int cube_case) {
+    Vec3 slope(0.0);
+    double steepest = 0.0;
+    for (int corner = 0; corner < 8; ++corner) {
+      const int at = node + (corner & 1) + 9 * (corner >> 1 & 1) + 81 * (corner >> 2);
+      for (int axis = 0; axis < 3; ++axis) {
+        if (corner >> axis & 1) continue;
+        const double difference = (values.at(at + kStride[axis]) - values.at(at)) / (lattice.step[axis] * stride);
+        slope[axis] += 0.25 * difference;
+        steepest = std::max(steepest, std::abs(difference));
+      }
+    }
+    const double length = std::max(glm::length(slope), kLeastSlope * steepest);
+    for (const CellTriangle& t : CaseTable::cube()[cube_case]) {
+      Face& face = faces_.emplace_back();
+      face.slope = length;
+      for (int corner = 0; corner < 3; ++corner) {
+        const CubeEdge e = cube_edge(t[corner]);
+        face.vertex[corner] = vertex_of_edge_[e.axis * kNodes + node + e.from.x + 9 * e.from.y + 81 * e.from.z];
+      }
+    }
+  });
+}
+
+bool BrickError::deviates(double tolerance, const Lattice& lattice, const Field& field, int subdivisions) {
+  // The middles of the small triangles that are not turned around.
+  std::vector<Vec3> weights;
+  for (int u = 0; u < subdivisions; ++u)
+    for (int v = 0; u + v < subdivisions; ++v) {
+      const double a = (u + 1.0 / 3.0) / subdivisions, b = (v + 1.0 / 3.0) / subdivisions;
+      weights.emplace_back(a, b, 1.0 - a - b);
+    }
+  const auto add = [&](const Vec3& index) {
+    const Vec3 p = lattice.place(index);
+    x_.push_back(p.x);
+    y_.push_back(p.y);
+    z_.push_back(p.z);
+  };
+  x_.clear();
+  y_.clear();
+  z_.clear();
+  // The mesh's vertices will be roots: what its triangles are off by is what is left when these values are subtracted.
+  const bool first = subdivisions == 1;
+  const std::size_t skip = first ? vertices_.size() : 0;
+  if (first)
+    for (const Vertex& v : vertices_) add(v.index);
+  for (const Face& face : faces_)
+    for (const Vec3& w : weights)
+      add(w.x * vertices_[face.vertex[0]].index + w.y * vertices_[face.vertex[1]].index +
+          w.z * vertices_[face.vertex[2]].index);
+  f_.resize(x_.size());
+  field.values({x_, y_, z_}, f_, {});
+  evaluations_ += f_.size();
+  for (std::size_t v = 0; v < skip; ++v) vertices_[v].value = f_[v];
+  std::size_t i = skip;
+  for (const Face& face : faces_)
+    for (const Vec3& w : weights) {
+      const double linear = w.x * vertices_[face.vertex[0]].value + w.y * vertices_[face.vertex[1]].value +
+                            w.z * vertices_[face.vertex[2]].value;
+      if (std::abs(f_[i++] - linear) > tolerance * face.slope) return true;
+    }
+  return false;
+}
+
+bool BrickError::exceeds(double tolerance, const Lattice& lattice, const Field& field, const Brick& brick,
+                         const BrickValues& values) {
+  if (bends(tolerance, lattice, brick, values)) return true;
+  reconstruct(lattice, brick, values);
+  if (faces_.empty()) return false;
+  if (deviates(tolerance, lattice, field, 1)) return true;
+  const int subdivisions = std::min(1 << brick.level, kMostSubdivisions);
+  return deviates(tolerance, lattice, field, subdivisions);
+}
+
+namespace {
+
+class Refiner {
+ public:
+  Refiner(const Lattice& lattice, double tolerance, const ForcedSplits& forced)
+      : lattice_(lattice), tolerance_(tolerance), forced_(forced) {}
+
+  void descend(const Cell& cell, int level) {
+    if (level > lattice_.coarsest || (level > 0 && is_coarse(cell, level))) {
+      for (const Cell& child : split(lattice_, cell, level)) descend(child, level - 1);
+    } else {
+      result_.leaves.push_back({cell.index, level});
+    }
+  }
+
+  Refinement take() {
+    result_.evaluations += error_.evaluations();
+    return std::move(result_);
+  }
+
+ private:
+  bool is_coarse(const Cell& cell, int level) {
+    if (forced_) return forced_({cell.index, level});
+    const FieldPtr field = cell.field->narrow(lattice_.box(cell.index, level));
+    Brick brick(lattice_, cell.index, level);
+    values_.sample(lattice_, *field, brick);
+    result_.evaluations += BrickValues::count(brick);
+    return error_.exceeds(tolerance_, lattice_, *field, brick, values_);
+  }
+
+  const Lattice& lattice_;
+  double tolerance_;
+  const ForcedSplits& forced_;
+  BrickValues values_;
+  BrickError error_;
+  Refinement result_;
+};
+
+}  // namespace
+
+Refinement refine(const Lattice& lattice, const Cell& cell, int level, double tolerance, const ForcedSplits& forced) {
+  Refiner refiner(lattice, tolerance, forced);
+  refiner.descend(cell, level);
+  return refiner.take();
+}
+
+}  // namespace outcrop::meshing

@@ -1,0 +1,59 @@
+/// Where bricks are split: from the field and the lattice alone, so that all pieces of a region agree.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+#include "brick_tree.h"
+#include "lattice.h"
+
+namespace outcrop::meshing {
+
+/// How far the surface in a brick lies from what the brick's nodes make of it.
+class BrickError {
+ public:
+  /// @return whether marching cubes in this brick would be off by more than `tolerance` metres: sampled on its triangles,
+  /// more densely the coarser the brick; or whether values along the lattice's lines bend so much that surface may hide
+  /// between nodes of one sign. `field` is narrowed to the brick; `values` are the brick's.
+  bool exceeds(double tolerance, const Lattice& lattice, const Field& field, const Brick& brick,
+               const BrickValues& values);
+  /// Field values computed since construction.
+  [[nodiscard]] std::size_t evaluations() const noexcept { return evaluations_; }
+
+ private:
+  struct Vertex {
+    Vec3 index;
+    double value = 0.0;
+  };
+  struct Face {
+    std::array<int, 3> vertex;
+    double slope;  ///< |∇f| of the cell, from its corners.
+  };
+  [[nodiscard]] bool bends(double tolerance, const Lattice& lattice, const Brick& brick,
+                           const BrickValues& values) const;
+  void reconstruct(const Lattice& lattice, const Brick& brick, const BrickValues& values);
+  [[nodiscard]] bool deviates(double tolerance, const Lattice& lattice, const Field& field, int subdivisions);
+
+  std::size_t evaluations_ = 0;
+  std::vector<Vertex> vertices_;
+  std::vector<Face> faces_;
+  std::vector<double> x_, y_, z_, f_;
+  std::array<int, 3 * kNodes> vertex_of_edge_{};
+};
+
+/// True where a brick is to be split, whatever the field; for tests.
+using ForcedSplits = std::function<bool(const BrickPlace&)>;
+
+struct Refinement {
+  std::vector<BrickPlace> leaves;  ///< In Morton order.
+  std::size_t evaluations = 0;
+};
+
+/// The bricks of one octree cell at `level`: from the lattice's coarsest level downwards each is split while its error
+/// exceeds the tolerance, unless `forced` decides; not yet balanced. Cost: 9³ values, and about two more a triangle, for
+/// each brick above level 0.
+[[nodiscard]] Refinement refine(const Lattice& lattice, const Cell& cell, int level, double tolerance,
+                                const ForcedSplits& forced);
+
+}  // namespace outcrop::meshing

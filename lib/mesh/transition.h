@@ -1,0 +1,97 @@
+/// Cells beside finer ones: cut into pyramids and tetrahedra around their centres.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "brick_tree.h"
+#include "lattice.h"
+
+namespace outcrop::meshing {
+
+/// Nodes of a brick and the middles between them: 0 to 16 an axis.
+inline constexpr int kHalves = 2 * kBrickCells + 1;
+
+/// A half node as a number; numbers compare as (z, y, x) do.
+[[nodiscard]] constexpr int half_number(const IVec3& half) noexcept {
+  return half.x + kHalves * (half.y + kHalves * half.z);
+}
+[[nodiscard]] constexpr IVec3 half_place(int number) noexcept {
+  return {number % kHalves, number / kHalves % kHalves, number / (kHalves * kHalves)};
+}
+
+/// An edge of a piece, as its two half nodes, the lower number first.
+using HalfEdge = std::array<int, 2>;
+
+/// The surface in the cells of one brick that share a face or an edge with finer cells.
+///
+/// Such a cell is the union of cones from its centre over its faces. A face shared with finer cells is four squares, and
+/// carries four pyramids; a face with a divided edge is a fan of triangles around its middle, and carries tetrahedra;
+/// any other face is one square and carries one pyramid. Both cells that share a face cut it alike, so what they draw on
+/// it is the same; each piece is convex, so what is in different pieces does not meet.
+class TransitionCells {
+ public:
+  TransitionCells();
+  /// Finds those cells and samples them. `values` are the brick's; `field` is narrowed to it.
+  /// @return true when one of them holds rock and air.
+  bool sample(const Lattice& lattice, const Field& field, const Brick& brick, const BrickValues& values,
+              const FinerCells& finer);
+  /// Is this one of those cells? node = i + 9 j + 81 k.
+  [[nodiscard]] bool is_coned(int node) const noexcept { return coned_[node] != 0; }
+  /// Is the brick's edge from node (i, j, k) in two halves? Bit i of the row.
+  [[nodiscard]] unsigned divided(int axis, int j, int k) const noexcept { return divided_[(axis * 9 + k) * 9 + j]; }
+  [[nodiscard]] double at(int half) const noexcept { return values_[half]; }
+  [[nodiscard]] std::size_t evaluations() const noexcept { return evaluations_; }
+  [[nodiscard]] std::size_t mixed_cells() const noexcept { return mixed_.size(); }
+
+  /// Calls emit(edge, edge, edge) for each triangle of the coned cells, counter-clockwise seen from the air.
+  template <class Emit>
+  void for_each_triangle(Emit&& emit) const {
+    for (const Piece& piece : pieces_) emit_piece(piece, emit);
+  }
+
+ private:
+  struct Piece {
+    std::array<int, 5> corners;  ///< Half nodes; those of a tetrahedron are four.
+    bool tetrahedron;
+  };
+  void find_cells(const Lattice& lattice, const Field& field, const Brick& brick, const BrickValues& values,
+                  const FinerCells& finer);
+  void evaluate(const Lattice& lattice, const Field& field, const Brick& brick);
+  template <class Visit>
+  void for_each_piece(const IVec3& cell, const FinerCells& finer, Visit&& visit) const;
+  template <class Emit>
+  void emit_piece(const Piece& piece, Emit&& emit) const;
+
+  std::vector<double> values_, x_, y_, z_, f_;
+  std::vector<std::uint8_t> known_;
+  std::vector<std::uint8_t> coned_;
+  std::array<std::uint16_t, 3 * 81> divided_{};
+  std::vector<IVec3> cells_, mixed_;
+  std::vector<int> missing_;
+  std::vector<Piece> pieces_;
+  std::size_t evaluations_ = 0;
+};
+
+/// The triangles of a piece whose corners are rock as the bits of `rock` say, as pairs of corners.
+struct PieceTriangle {
+  std::array<std::array<std::uint8_t, 2>, 3> edges;
+};
+[[nodiscard]] std::span<const PieceTriangle> piece_triangles(bool tetrahedron, unsigned rock);
+
+template <class Emit>
+void TransitionCells::emit_piece(const Piece& piece, Emit&& emit) const {
+  unsigned rock = 0;
+  for (int i = 0; i < (piece.tetrahedron ? 4 : 5); ++i) rock |= (values_[piece.corners[i]] < 0.0 ? 1u : 0u) << i;
+  for (const PieceTriangle& t : piece_triangles(piece.tetrahedron, rock)) {
+    std::array<HalfEdge, 3> edges;
+    for (int i = 0; i < 3; ++i) {
+      const int a = piece.corners[t.edges[i][0]], b = piece.corners[t.edges[i][1]];
+      edges[i] = {std::min(a, b), std::max(a, b)};
+    }
+    emit(edges[0], edges[1], edges[2]);
+  }
+}
+
+}  // namespace outcrop::meshing
