@@ -47,10 +47,11 @@ class BrickTree {
   [[nodiscard]] bool is_leaf(const BrickPlace& at) const { return state(at) == State::Leaf; }
   [[nodiscard]] bool is_split(const BrickPlace& at) const { return state(at) == State::Split; }
   [[nodiscard]] FinerCells finer_around(const BrickPlace& brick) const;
+  /// A number for the place, never 0.
+  [[nodiscard]] static std::uint64_t key(const BrickPlace& at) noexcept;
 
  private:
   enum class State : std::uint8_t { None, Leaf, Split };
-  [[nodiscard]] static std::uint64_t key(const BrickPlace& at) noexcept;
   [[nodiscard]] State state(const BrickPlace& at) const;
   void mark_parents_split(BrickPlace at);
   void split_down_to(const Lattice& lattice, const BrickPlace& at);

@@ -74,10 +74,6 @@ void contradiction(const Vec3& where) {
       std::string("field: expected bound and narrow that agree with its values, got boxes that disagree near ") + place);
 }
 
-ChunkBuilder::ChunkBuilder(const Lattice& lattice, const PolygonizeOptions& options, const BrickTree* tree,
-                           const Task& task)
-    : lattice_(lattice), options_(options), tree_(tree), task_(task) {}
-
 Chunk ChunkBuilder::build(const Cell& cell, int level) {
   chunk_ = {};
   shared_.clear();
@@ -92,7 +88,8 @@ void ChunkBuilder::descend(const Cell& cell, int level) {
     if (level == 0) return visit(cell, level);
     for (const Cell& child : split(lattice_, cell, level)) descend(child, level - 1);
   } else if (tree_->is_split({cell.index, level})) {
-    const FieldPtr field = cell.field->narrow(lattice_.box(cell.index, level));
+    const FieldPtr* known = narrowed_->find(BrickTree::key({cell.index, level}));
+    const FieldPtr field = known ? *known : cell.field->narrow(lattice_.box(cell.index, level));
     for (int octant = 0; octant < 8; ++octant) descend({child_index(cell.index, octant), field}, level - 1);
   } else if (tree_->is_leaf({cell.index, level})) {
     // What balance made is not known to hold surface.

@@ -43,8 +43,15 @@ struct Chunk {
 /// Meshes the bricks of a tree's cell at `level`, narrowing on the way down.
 class ChunkBuilder {
  public:
-  /// @param tree  Null: uniform cells.
-  ChunkBuilder(const Lattice& lattice, const PolygonizeOptions& options, const BrickTree* tree, const Task& task);
+  /// Fields narrowed to cells of the tree, by BrickTree::key; need not be complete.
+  using Narrowed = FlatMap<FieldPtr>;
+  ChunkBuilder(const Lattice& lattice, const PolygonizeOptions& options, const Task& task)
+      : lattice_(lattice), options_(options), task_(task) {}
+  /// Bricks of other sizes than the finest; without them cells are uniform.
+  void use(const BrickTree& tree, const Narrowed& narrowed) {
+    tree_ = &tree;
+    narrowed_ = &narrowed;
+  }
   /// @throws ParameterError when two bricks disagree about an edge; Cancelled.
   [[nodiscard]] Chunk build(const Cell& cell, int level);
 
@@ -68,8 +75,9 @@ class ChunkBuilder {
 
   const Lattice& lattice_;
   const PolygonizeOptions& options_;
-  const BrickTree* tree_;
   const Task& task_;
+  const BrickTree* tree_ = nullptr;
+  const Narrowed* narrowed_ = nullptr;
   Chunk chunk_;
   BrickValues values_;
   TransitionCells transition_;

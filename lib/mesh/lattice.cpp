@@ -80,15 +80,18 @@ std::vector<Cell> root_cells(const Lattice& lattice, const Field& field) {
   return {{IVec3(0), field.narrow(box)}};
 }
 
-std::vector<Cell> split(const Lattice& lattice, const Cell& cell, int level) {
-  std::vector<Cell> children;
-  const FieldPtr field = cell.field->narrow(lattice.box(cell.index, level));
+std::vector<Cell> children(const Lattice& lattice, const IVec3& index, int level, const FieldPtr& narrowed) {
+  std::vector<Cell> cells;
   for (int octant = 0; octant < 8; ++octant) {
-    const IVec3 index = child_index(cell.index, octant);
-    if (lattice.holds(index, level - 1) && may_hold_surface(*field, lattice.box(index, level - 1)))
-      children.push_back({index, field});
+    const IVec3 child = child_index(index, octant);
+    if (lattice.holds(child, level - 1) && may_hold_surface(*narrowed, lattice.box(child, level - 1)))
+      cells.push_back({child, narrowed});
   }
-  return children;
+  return cells;
+}
+
+std::vector<Cell> split(const Lattice& lattice, const Cell& cell, int level) {
+  return children(lattice, cell.index, level, cell.field->narrow(lattice.box(cell.index, level)));
 }
 
 Brick::Brick(const Lattice& lattice, const IVec3& brick_index, int brick_level)

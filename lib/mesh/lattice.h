@@ -75,7 +75,10 @@ struct Cell {
   return 2 * index + IVec3(octant & 1, octant >> 1 & 1, octant >> 2 & 1);
 }
 
-/// The up to eight children, in Morton order, of a cell at `level` > 0 that the bound cannot exclude.
+/// The up to eight children, in Morton order, of a cell at `level` > 0 that the bound cannot exclude; `narrowed` is
+/// the field in that cell.
+[[nodiscard]] std::vector<Cell> children(const Lattice& lattice, const IVec3& index, int level, const FieldPtr& narrowed);
+/// The same, narrowing the cell's field first.
 [[nodiscard]] std::vector<Cell> split(const Lattice& lattice, const Cell& cell, int level);
 
 /// Which of a brick's 9³ nodes are rock, and the edges between rock and air.

@@ -42,8 +42,9 @@ class Forest {
         missing.size(),
         [&](std::size_t i) {
           Refinement refinement = refine(lattice_, cells_[missing[i]], level_, tolerance_, forced_);
-          trees_[missing[i]] = std::move(refinement.leaves);
-          return refinement.evaluations;
+          const std::size_t made = refinement.evaluations;
+          trees_[missing[i]] = std::move(refinement);
+          return made;
         },
         task);
     std::size_t sum = 0;
@@ -52,9 +53,16 @@ class Forest {
   }
   [[nodiscard]] BrickTree balanced(std::size_t chunk) const {
     BrickTree tree;
-    for (const std::uint32_t n : around(chunk)) tree.add(trees_[n]);
+    for (const std::uint32_t n : around(chunk)) tree.add(trees_[n].leaves);
     tree.balance(lattice_);
     return tree;
+  }
+  /// Fields that refinement narrowed in a chunk; handed over.
+  [[nodiscard]] ChunkBuilder::Narrowed take_narrowed(std::size_t chunk) {
+    ChunkBuilder::Narrowed map;
+    for (auto& [place, field] : trees_[chunk].narrowed) map[BrickTree::key(place)] = std::move(field);
+    trees_[chunk].narrowed = {};
+    return map;
   }
   void release(std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i)
@@ -83,7 +91,7 @@ class Forest {
   double tolerance_;
   const ForcedSplits& forced_;
   FlatMap<std::uint32_t> number_;
-  std::vector<std::vector<BrickPlace>> trees_;
+  std::vector<Refinement> trees_;
   std::vector<std::size_t> waiting_;
   std::vector<char> made_ = std::vector<char>(trees_.size(), 0);
 };
@@ -123,9 +131,15 @@ PolygonizeStatistics mesh_region(const Field& field, const Lattice& lattice, con
     auto made = parallel_map(
         last - first,
         [&](std::size_t i) {
+          ChunkBuilder builder(lattice, options, task);
           BrickTree tree;
-          if (!uniform) tree = forest.balanced(first + i);
-          Chunk chunk = ChunkBuilder(lattice, options, uniform ? nullptr : &tree, task).build(cells[first + i], level);
+          ChunkBuilder::Narrowed narrowed;
+          if (!uniform) {
+            tree = forest.balanced(first + i);
+            narrowed = forest.take_narrowed(first + i);
+            builder.use(tree, narrowed);
+          }
+          Chunk chunk = builder.build(cells[first + i], level);
           if (uniform) cells[first + i].field.reset();
           ChunkSummary summary = summarise(chunk, lattice, needs);
           task.advance();

@@ -132,11 +132,17 @@ class Refiner {
       : lattice_(lattice), tolerance_(tolerance), forced_(forced) {}
 
   void descend(const Cell& cell, int level) {
-    if (level > lattice_.coarsest || (level > 0 && is_coarse(cell, level))) {
-      for (const Cell& child : split(lattice_, cell, level)) descend(child, level - 1);
-    } else {
+    if (level == 0) {
       result_.leaves.push_back({cell.index, level});
+      return;
     }
+    const FieldPtr field = cell.field->narrow(lattice_.box(cell.index, level));
+    if (level <= lattice_.coarsest && !is_coarse(cell.index, level, *field)) {
+      result_.leaves.push_back({cell.index, level});
+      return;
+    }
+    result_.narrowed.emplace_back(BrickPlace{cell.index, level}, field);
+    for (const Cell& child : children(lattice_, cell.index, level, field)) descend(child, level - 1);
   }
 
   Refinement take() {
@@ -145,13 +151,12 @@ class Refiner {
   }
 
  private:
-  bool is_coarse(const Cell& cell, int level) {
-    if (forced_) return forced_({cell.index, level});
-    const FieldPtr field = cell.field->narrow(lattice_.box(cell.index, level));
-    Brick brick(lattice_, cell.index, level);
-    values_.sample(lattice_, *field, brick);
+  bool is_coarse(const IVec3& index, int level, const Field& field) {
+    if (forced_) return forced_({index, level});
+    Brick brick(lattice_, index, level);
+    values_.sample(lattice_, field, brick);
     result_.evaluations += BrickValues::count(brick);
-    return error_.exceeds(tolerance_, lattice_, *field, brick, values_);
+    return error_.exceeds(tolerance_, lattice_, field, brick, values_);
   }
 
   const Lattice& lattice_;

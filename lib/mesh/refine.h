@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "brick_tree.h"
@@ -47,6 +48,7 @@ using ForcedSplits = std::function<bool(const BrickPlace&)>;
 
 struct Refinement {
   std::vector<BrickPlace> leaves;  ///< In Morton order.
+  std::vector<std::pair<BrickPlace, FieldPtr>> narrowed;  ///< The cells that were split, with their fields.
   std::size_t evaluations = 0;
 };
 
