@@ -15,23 +15,49 @@ constexpr double kLeastSlope = 0.1;
 
 }  // namespace
 
-bool BrickError::bends(double tolerance, const Lattice& lattice, const Brick& brick, const BrickValues& values) const {
+bool BrickError::hides(double tolerance, const Lattice& lattice, const Field& field, const Brick& brick,
+                       const BrickValues& values) {
+  x_.clear();
+  y_.clear();
+  z_.clear();
+  limits_.clear();
+  const Vec3 first(brick.first());
+  const double stride = 1 << brick.level;
   const IVec3 n = brick.cells;
   for (int axis = 0; axis < 3; ++axis) {
-    const int stride = kStride[axis];
-    const double edge = lattice.step[axis] * (1 << brick.level);
-    const IVec3 first(axis == 0, axis == 1, axis == 2), last = n - first;
-    for (int k = first.z; k <= last.z; ++k)
-      for (int j = first.y; j <= last.y; ++j)
-        for (int i = first.x; i <= last.x; ++i) {
-          const int node = i + 9 * j + 81 * k;
-          const double a = values.at(node - stride), b = values.at(node), c = values.at(node + stride);
-          if ((a < 0.0) != (b < 0.0) || (b < 0.0) != (c < 0.0)) continue;
-          // Between nodes a parabola goes an eighth, a crease up to a quarter of the second difference beyond them.
-          const double hidden = 0.25 * std::abs(a - 2.0 * b + c) - std::min({std::abs(a), std::abs(b), std::abs(c)});
-          if (hidden * edge > tolerance * std::max(std::abs(b - a), std::abs(c - b))) return true;
+    const int step = kStride[axis];
+    const double edge = lattice.step[axis] * stride;
+    for (int k = 0; k <= n.z - (axis == 2); ++k)
+      for (int j = 0; j <= n.y - (axis == 1); ++j)
+        for (int i = 0; i <= n.x - (axis == 0); ++i) {
+          const int node = i + 9 * j + 81 * k, along = axis == 0 ? i : axis == 1 ? j : k;
+          const double b = values.at(node), c = values.at(node + step);
+          if ((b < 0.0) != (c < 0.0)) continue;
+          // Straight on from both sides, the values meet where a crease between the nodes would be.
+          const double left = along > 0 ? b - values.at(node - step) : 0.0;
+          const double right = along + 2 <= n[axis] ? values.at(node + 2 * step) - c : 0.0;
+          const double towards = b < 0.0 ? 1.0 : -1.0;  // The way to 0.
+          if (towards * left <= 0.0 && towards * right >= 0.0) continue;
+          double t = 0.5;
+          if (along > 0 && along + 2 <= n[axis] && std::abs(left - right) > 0.0)
+            t = std::clamp((c - b - right) / (left - right), 0.0, 1.0);
+          const double peak = std::max(towards * (b + t * left), towards * (c - (1.0 - t) * right));
+          const double limit = tolerance * std::max(std::abs(left), std::abs(right)) / edge;
+          if (peak <= limit) continue;
+          Vec3 at(i, j, k);
+          at[axis] += t;
+          const Vec3 p = lattice.place(first + stride * at);
+          x_.push_back(p.x);
+          y_.push_back(p.y);
+          z_.push_back(p.z);
+          limits_.push_back(towards * limit);
         }
   }
+  f_.resize(x_.size());
+  field.values({x_, y_, z_}, f_, {});
+  evaluations_ += f_.size();
+  for (std::size_t i = 0; i < f_.size(); ++i)
+    if (limits_[i] > 0.0 ? f_[i] > limits_[i] : f_[i] < limits_[i]) return true;
   return false;
 }
 
@@ -75,6 +101,7 @@ void BrickError::reconstruct(const Lattice& lattice, const Brick& brick, const B
 }
 
 bool BrickError::deviates(double tolerance, const Lattice& lattice, const Field& field, int subdivisions) {
+  if (faces_.empty()) return false;
   // The middles of the small triangles that are not turned around.
   std::vector<Vec3> weights;
   for (int u = 0; u < subdivisions; ++u)
@@ -116,12 +143,9 @@ bool BrickError::deviates(double tolerance, const Lattice& lattice, const Field&
 
 bool BrickError::exceeds(double tolerance, const Lattice& lattice, const Field& field, const Brick& brick,
                          const BrickValues& values) {
-  if (bends(tolerance, lattice, brick, values)) return true;
   reconstruct(lattice, brick, values);
-  if (faces_.empty()) return false;
-  if (deviates(tolerance, lattice, field, 1)) return true;
-  const int subdivisions = std::min(1 << brick.level, kMostSubdivisions);
-  return deviates(tolerance, lattice, field, subdivisions);
+  if (deviates(tolerance, lattice, field, 1) || hides(tolerance, lattice, field, brick, values)) return true;
+  return deviates(tolerance, lattice, field, std::min(1 << brick.level, kMostSubdivisions));
 }
 
 namespace {

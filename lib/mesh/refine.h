@@ -15,8 +15,8 @@ namespace outcrop::meshing {
 class BrickError {
  public:
   /// @return whether marching cubes in this brick would be off by more than `tolerance` metres: sampled on its triangles,
-  /// more densely the coarser the brick; or whether values along the lattice's lines bend so much that surface may hide
-  /// between nodes of one sign. `field` is narrowed to the brick; `values` are the brick's.
+  /// more densely the coarser the brick; or whether surface hides between nodes of one sign, where values along the
+  /// lattice's lines head for 0 from both sides. `field` is narrowed to the brick; `values` are the brick's.
   bool exceeds(double tolerance, const Lattice& lattice, const Field& field, const Brick& brick,
                const BrickValues& values);
   /// Field values computed since construction.
@@ -31,15 +31,15 @@ class BrickError {
     std::array<int, 3> vertex;
     double slope;  ///< |∇f| of the cell, from its corners.
   };
-  [[nodiscard]] bool bends(double tolerance, const Lattice& lattice, const Brick& brick,
-                           const BrickValues& values) const;
+  [[nodiscard]] bool hides(double tolerance, const Lattice& lattice, const Field& field, const Brick& brick,
+                           const BrickValues& values);
   void reconstruct(const Lattice& lattice, const Brick& brick, const BrickValues& values);
   [[nodiscard]] bool deviates(double tolerance, const Lattice& lattice, const Field& field, int subdivisions);
 
   std::size_t evaluations_ = 0;
   std::vector<Vertex> vertices_;
   std::vector<Face> faces_;
-  std::vector<double> x_, y_, z_, f_;
+  std::vector<double> x_, y_, z_, f_, limits_;
   std::array<int, 3 * kNodes> vertex_of_edge_{};
 };
 

@@ -1,4 +1,4 @@
-/// A file that lives as long as its writer.
+/// Bytes that wait for their place.
 #pragma once
 
 #include <cstddef>
@@ -7,28 +7,28 @@
 #include <fstream>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "outcrop/core/file.h"
 
 namespace outcrop::meshing {
 
-/// Bytes that wait on disk: written in one go, then read.
+/// Written in one go, then read; what is more than a few megabytes lies in a file that is gone with the spool.
 class Spool {
  public:
-  /// @param beside  In whose folder the file lies. @throws as OutputFile.
-  explicit Spool(const std::filesystem::path& beside);
+  /// @param beside  In whose folder the file lies.
+  explicit Spool(std::filesystem::path beside) : beside_(std::move(beside)) {}
 
   /// @throws SystemError when the disk refuses.
-  void write(std::span<const std::byte> bytes) {
-    file_.write(bytes);
-    size_ += bytes.size();
-  }
+  void write(std::span<const std::byte> bytes);
   [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
   /// @throws SystemError when what was written cannot be read back.
   void read(std::uint64_t offset, std::span<std::byte> bytes);
 
  private:
-  OutputFile file_;
+  std::filesystem::path beside_;
+  std::vector<std::byte> memory_;  ///< Everything, until there is a file.
+  std::optional<OutputFile> file_;
   std::uint64_t size_ = 0, flushed_ = 0;
   std::ifstream reader_;
 };
