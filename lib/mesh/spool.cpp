@@ -7,7 +7,7 @@
 namespace outcrop::meshing {
 namespace {
 
-constexpr std::size_t kMemoryBytes = std::size_t{1} << 22;
+constexpr std::size_t kMemoryBytes = std::size_t{1} << 20;
 
 }  // namespace
 

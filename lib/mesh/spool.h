@@ -13,7 +13,7 @@
 
 namespace outcrop::meshing {
 
-/// Written in one go, then read; what is more than a few megabytes lies in a file that is gone with the spool.
+/// Written in one go, then read; what is more than a megabyte lies in a file that is gone with the spool.
 class Spool {
  public:
   /// @param beside  In whose folder the file lies.

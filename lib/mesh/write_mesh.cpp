@@ -169,7 +169,7 @@ class Writer : public MeshSink {
 
   std::filesystem::path path_;
   OutputFile file_;
-  const Task& task_;
+  Task task_;
   Vec3 shift_{0.0};
   Bytes direct_;
   std::uint32_t direct_section_ = 0;

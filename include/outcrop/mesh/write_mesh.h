@@ -25,7 +25,7 @@ struct MeshMetadata {
 /// Chooses the format by the extension. .ply: float x y z, nx ny nz, uchar red green blue (sRGB; when there are colours)
 /// and uchar material (ushort past 255), faces of uint. .obj: v, vn, and usemtl by the label that most corners of a face
 /// have. .stl: positions alone. What stands later in the file than it comes waits in files beside it, gone with the
-/// writer. `task` is borrowed.
+/// writer.
 /// @throws ParameterError naming the known extensions; its members throw SystemError and Cancelled.
 [[nodiscard]] std::unique_ptr<MeshSink> mesh_writer(const std::filesystem::path& path, MeshMetadata metadata = {},
                                                     const Task& task = {});
