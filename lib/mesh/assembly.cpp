@@ -157,6 +157,8 @@ void Assembly::finish(const Field& field, const Task& task) {
   parts_.choose(needs_.parts ? options_.parts : Parts::All, options_.keep_voids, all);
   statistics_.parts_removed = parts_.parts_removed();
   statistics_.voids_removed = parts_.voids_removed();
+  statistics_.resolution = options_.resolution;
+  statistics_.tolerance = options_.tolerance;
   totals_.origin = lattice_.lo;
   totals_.vertices = parts_.vertices();
   totals_.triangles = parts_.triangles();

@@ -51,6 +51,8 @@ class Assembly {
   void finish(const Field& field, const Task& task);
   /// After finish().
   void emit(std::span<MeshSink* const> sinks, const Task& task);
+  /// After finish().
+  [[nodiscard]] const MeshTotals& totals() const noexcept { return totals_; }
   [[nodiscard]] const PolygonizeStatistics& statistics() const noexcept { return statistics_; }
 
  private:

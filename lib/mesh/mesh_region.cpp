@@ -115,9 +115,8 @@ std::vector<Cell> chunk_cells(const Field& field, const Lattice& lattice, const 
   return cells;
 }
 
-PolygonizeStatistics mesh_region(const Field& field, const Lattice& lattice, const PolygonizeOptions& options,
-                                 const PieceOptions& pieces, std::span<MeshSink* const> sinks, const Task& task,
-                                 const ForcedSplits& forced) {
+Assembly mesh_region(const Field& field, const Lattice& lattice, const PolygonizeOptions& options,
+                     const PieceOptions& pieces, const Task& task, const ForcedSplits& forced) {
   const int level = chunk_level(lattice);
   std::vector<Cell> cells = chunk_cells(field, lattice, task);
   const bool uniform = lattice.coarsest == 0;
@@ -151,8 +150,7 @@ PolygonizeStatistics mesh_region(const Field& field, const Lattice& lattice, con
   }
   cells.clear();
   assembly.finish(field, task);
-  assembly.emit(sinks, task);
-  return assembly.statistics();
+  return assembly;
 }
 
 void MeshCollector::begin(const MeshTotals& totals) {

@@ -1,8 +1,9 @@
 /// The way from a field to a mesh, chunk by chunk.
 #pragma once
 
-#include <span>
+#include <utility>
 
+#include "assembly.h"
 #include "lattice.h"
 #include "outcrop/core/task.h"
 #include "outcrop/mesh/polygonize.h"
@@ -10,11 +11,11 @@
 
 namespace outcrop::meshing {
 
-/// Meshes a lattice and hands the result to `sinks`; `forced` splits bricks in the place of the field's error.
+/// Meshes a lattice, up to the point where the mesh can be emitted; `forced` splits bricks in the place of the field's
+/// error. The result refers to `lattice` and `options`.
 /// @throws as polygonize_pieces.
-PolygonizeStatistics mesh_region(const Field& field, const Lattice& lattice, const PolygonizeOptions& options,
-                                 const PieceOptions& pieces, std::span<MeshSink* const> sinks, const Task& task,
-                                 const ForcedSplits& forced = {});
+[[nodiscard]] Assembly mesh_region(const Field& field, const Lattice& lattice, const PolygonizeOptions& options,
+                                   const PieceOptions& pieces, const Task& task, const ForcedSplits& forced = {});
 
 /// Octree cells of this level are the units of work.
 [[nodiscard]] int chunk_level(const Lattice& lattice) noexcept;

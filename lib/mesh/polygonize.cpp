@@ -4,9 +4,11 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
+#include "budget.h"
 #include "lattice.h"
 #include "mesh_region.h"
 #include "outcrop/core/error.h"
@@ -21,6 +23,7 @@ using meshing::Brick;
 using meshing::BrickValues;
 using meshing::Cell;
 using meshing::Lattice;
+using meshing::TriangleBudget;
 
 /// Octree cells that the estimate follows at each level, and bricks that it evaluates.
 constexpr std::size_t kSampledCells = 1024;
@@ -120,7 +123,16 @@ PolygonizeStatistics polygonize_pieces(const Field& field, const PolygonizeOptio
   require(pieces.chunks >= 1, "chunks", "at least 1", static_cast<double>(pieces.chunks));
   const Lattice lattice = Lattice::over(options);
   if (options.memory_limit > 0) require_memory(estimate(field, lattice, task), options);
-  return meshing::mesh_region(field, lattice, options, pieces, sinks, task);
+  std::optional<TriangleBudget> budget;
+  if (options.triangles > 0) budget.emplace(field, options, task);
+  for (;;) {
+    const PolygonizeOptions used = budget ? budget->options() : options;
+    const Lattice fitted = Lattice::over(used);
+    meshing::Assembly assembly = mesh_region(field, fitted, used, pieces, task);
+    if (budget && budget->refit(assembly.totals().triangles)) continue;
+    assembly.emit(sinks, task);
+    return assembly.statistics();
+  }
 }
 
 PolygonizeEstimate estimate_polygonize(const Field& field, const PolygonizeOptions& options, const Task& task) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "outcrop/mesh/marching_cubes.h"
 
@@ -12,15 +13,16 @@ namespace {
 constexpr int kMostSubdivisions = 4;
 /// Below this share of the steepest slope that values along the lattice show, a cell's slope says nothing.
 constexpr double kLeastSlope = 0.1;
+constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-bool BrickError::hides(double tolerance, const Lattice& lattice, const Field& field, const Brick& brick,
-                       const BrickValues& values) {
+double BrickError::hidden(double enough, const Lattice& lattice, const Field& field, const Brick& brick,
+                          const BrickValues& values) {
   x_.clear();
   y_.clear();
   z_.clear();
-  limits_.clear();
+  slopes_.clear();
   const Vec3 first(brick.first());
   const double stride = 1 << brick.level;
   const IVec3 n = brick.cells;
@@ -42,23 +44,23 @@ bool BrickError::hides(double tolerance, const Lattice& lattice, const Field& fi
           if (along > 0 && along + 2 <= n[axis] && std::abs(left - right) > 0.0)
             t = std::clamp((c - b - right) / (left - right), 0.0, 1.0);
           const double peak = std::max(towards * (b + t * left), towards * (c - (1.0 - t) * right));
-          const double limit = tolerance * std::max(std::abs(left), std::abs(right)) / edge;
-          if (peak <= limit) continue;
+          const double slope = std::max(std::abs(left), std::abs(right)) / edge;
+          if (peak <= (enough < kUnlimited ? enough * slope : 0.0)) continue;
           Vec3 at(i, j, k);
           at[axis] += t;
           const Vec3 p = lattice.place(first + stride * at);
           x_.push_back(p.x);
           y_.push_back(p.y);
           z_.push_back(p.z);
-          limits_.push_back(towards * limit);
+          slopes_.push_back(towards * slope);
         }
   }
   f_.resize(x_.size());
   field.values({x_, y_, z_}, f_, {});
   evaluations_ += f_.size();
-  for (std::size_t i = 0; i < f_.size(); ++i)
-    if (limits_[i] > 0.0 ? f_[i] > limits_[i] : f_[i] < limits_[i]) return true;
-  return false;
+  double most = 0.0;
+  for (std::size_t i = 0; i < f_.size(); ++i) most = std::max(most, f_[i] / slopes_[i]);
+  return most;
 }
 
 void BrickError::reconstruct(const Lattice& lattice, const Brick& brick, const BrickValues& values) {
@@ -100,8 +102,8 @@ void BrickError::reconstruct(const Lattice& lattice, const Brick& brick, const B
   });
 }
 
-bool BrickError::deviates(double tolerance, const Lattice& lattice, const Field& field, int subdivisions) {
-  if (faces_.empty()) return false;
+double BrickError::deviation(const Lattice& lattice, const Field& field, int subdivisions) {
+  if (faces_.empty()) return 0.0;
   // The middles of the small triangles that are not turned around.
   std::vector<Vec3> weights;
   for (int u = 0; u < subdivisions; ++u)
@@ -132,20 +134,24 @@ bool BrickError::deviates(double tolerance, const Lattice& lattice, const Field&
   evaluations_ += f_.size();
   for (std::size_t v = 0; v < skip; ++v) vertices_[v].value = f_[v];
   std::size_t i = skip;
+  double most = 0.0;
   for (const Face& face : faces_)
     for (const Vec3& w : weights) {
       const double linear = w.x * vertices_[face.vertex[0]].value + w.y * vertices_[face.vertex[1]].value +
                             w.z * vertices_[face.vertex[2]].value;
-      if (std::abs(f_[i++] - linear) > tolerance * face.slope) return true;
+      most = std::max(most, std::abs(f_[i++] - linear) / face.slope);
     }
-  return false;
+  return most;
 }
 
-bool BrickError::exceeds(double tolerance, const Lattice& lattice, const Field& field, const Brick& brick,
-                         const BrickValues& values) {
+double BrickError::measure(double enough, const Lattice& lattice, const Field& field, const Brick& brick,
+                           const BrickValues& values) {
   reconstruct(lattice, brick, values);
-  if (deviates(tolerance, lattice, field, 1) || hides(tolerance, lattice, field, brick, values)) return true;
-  return deviates(tolerance, lattice, field, std::min(1 << brick.level, kMostSubdivisions));
+  double error = deviation(lattice, field, 1);
+  if (error > enough) return error;
+  error = std::max(error, hidden(enough, lattice, field, brick, values));
+  if (error > enough) return error;
+  return std::max(error, deviation(lattice, field, std::min(1 << brick.level, kMostSubdivisions)));
 }
 
 namespace {
@@ -180,7 +186,7 @@ class Refiner {
     Brick brick(lattice_, index, level);
     values_.sample(lattice_, field, brick);
     result_.evaluations += BrickValues::count(brick);
-    return error_.exceeds(tolerance_, lattice_, field, brick, values_);
+    return error_.measure(tolerance_, lattice_, field, brick, values_) > tolerance_;
   }
 
   const Lattice& lattice_;

@@ -14,11 +14,14 @@ namespace outcrop::meshing {
 /// How far the surface in a brick lies from what the brick's nodes make of it.
 class BrickError {
  public:
-  /// @return whether marching cubes in this brick would be off by more than `tolerance` metres: sampled on its triangles,
-  /// more densely the coarser the brick; or whether surface hides between nodes of one sign, where values along the
-  /// lattice's lines head for 0 from both sides. `field` is narrowed to the brick; `values` are the brick's.
-  bool exceeds(double tolerance, const Lattice& lattice, const Field& field, const Brick& brick,
-               const BrickValues& values);
+  /// @return about how many metres marching cubes in this brick would be off: sampled on its triangles, more densely the
+  /// coarser the brick, and where surface hides between nodes of one sign, since values along the lattice's lines head
+  /// for 0 from both sides. Stops when that is more than `enough`. `field` is narrowed to the brick; `values` are the
+  /// brick's.
+  double measure(double enough, const Lattice& lattice, const Field& field, const Brick& brick,
+                 const BrickValues& values);
+  /// Of the brick measured last.
+  [[nodiscard]] std::size_t triangles() const noexcept { return faces_.size(); }
   /// Field values computed since construction.
   [[nodiscard]] std::size_t evaluations() const noexcept { return evaluations_; }
 
@@ -31,15 +34,15 @@ class BrickError {
     std::array<int, 3> vertex;
     double slope;  ///< |∇f| of the cell, from its corners.
   };
-  [[nodiscard]] bool hides(double tolerance, const Lattice& lattice, const Field& field, const Brick& brick,
-                           const BrickValues& values);
+  [[nodiscard]] double hidden(double enough, const Lattice& lattice, const Field& field, const Brick& brick,
+                              const BrickValues& values);
   void reconstruct(const Lattice& lattice, const Brick& brick, const BrickValues& values);
-  [[nodiscard]] bool deviates(double tolerance, const Lattice& lattice, const Field& field, int subdivisions);
+  [[nodiscard]] double deviation(const Lattice& lattice, const Field& field, int subdivisions);
 
   std::size_t evaluations_ = 0;
   std::vector<Vertex> vertices_;
   std::vector<Face> faces_;
-  std::vector<double> x_, y_, z_, f_, limits_;
+  std::vector<double> x_, y_, z_, f_, slopes_;
   std::array<int, 3 * kNodes> vertex_of_edge_{};
 };
 

@@ -57,8 +57,10 @@ Meshed mesh_with(const Field& field, const PolygonizeOptions& options, const mes
   meshing::MeshCollector collector;
   MeshSink* const sinks[] = {&collector};
   Meshed result;
-  result.statistics =
-      meshing::mesh_region(field, meshing::Lattice::over(options), options, {}, sinks, {}, splits);
+  const meshing::Lattice lattice = meshing::Lattice::over(options);
+  meshing::Assembly assembly = meshing::mesh_region(field, lattice, options, {}, {}, splits);
+  assembly.emit(sinks, {});
+  result.statistics = assembly.statistics();
   result.mesh = collector.take();
   return result;
 }
@@ -244,6 +246,19 @@ TEST(AdaptiveMesh, FindsThinFeaturesThatCoarseNodesMiss) {
     EXPECT_EQ(check_mesh(mesh).parts, 1u) << shift;
     EXPECT_NEAR(check_mesh(mesh).volume, 6.4 * 6.4 / normal.z * 1.1 * 1.2 * resolution, 0.05 * 6.4 * 6.4 * resolution)
         << shift;
+  }
+}
+
+TEST(AdaptiveMesh, HasAboutAsManyTrianglesAsAskedFor) {
+  PolygonizeOptions options{.region = {{-4, -4, -1}, {4, 4, 1}}, .resolution = 0.02};
+  const FieldPtr field = rough_spot();
+  // All of the finest cells make about 330 000.
+  for (const std::size_t wanted : {10'000, 40'000, 200'000, 500'000}) {
+    options.triangles = wanted;
+    const PolygonizeResult made = polygonize(*field, options);
+    EXPECT_NEAR(static_cast<double>(made.mesh.triangles.size()), static_cast<double>(wanted), 0.1 * wanted);
+    EXPECT_EQ(made.statistics.tolerance == 0.0, wanted == 500'000);
+    EXPECT_EQ(made.statistics.resolution < options.resolution, wanted == 500'000);
   }
 }
 

@@ -34,6 +34,8 @@ struct PolygonizeOptions {
   double resolution = 0.25;  ///< Edge of the finest cells in metres, > 0.
   double tolerance = 0.0;    ///< Metres, ≥ 0: how far triangles may lie off the surface where cells are not finest; 0: all are.
   int levels = 5;            ///< Cells are up to 2^levels times as long as the finest, 0 to 8; with a tolerance.
+  std::size_t triangles = 0;  ///< About how many are wanted; 0: as many as it takes. Decides the tolerance, and the
+                              ///< resolution where all finest cells would not do.
   Border border = Border::Open;
   Parts parts = Parts::All;
   bool keep_voids = false;
@@ -48,6 +50,7 @@ struct PolygonizeStatistics {
   std::size_t evaluations = 0;    ///< Field values computed.
   std::size_t parts_removed = 0;  ///< Floating parts.
   std::size_t voids_removed = 0;
+  double resolution = 0.0, tolerance = 0.0;  ///< As they were, or as the wanted number of triangles made them.
   std::array<std::size_t, kMaxLevels + 1> bricks{};  ///< Of 8³ cells that the surface crosses, by level; 0 is the finest.
 };
 
