@@ -1,17 +1,32 @@
-/// Triangles per second of the mesher: uniform cells, roots and normals, on fields that cost next to nothing.
+/// Triangles per second of the mesher, with roots and normals: uniform and adaptive cells, on fields that cost next to
+/// nothing and on a fractured tile, beside OpenVDB on the same tile.
+///
+/// Counters: `triangles`; `triangles/s` by the processor time of all threads; `error_mean` and `error_rms`, in finest
+/// cells, of points on the triangles; `fewer`: triangles of uniform cells over those of adaptive ones.
 #include <benchmark/benchmark.h>
+#include <openvdb/openvdb.h>
+#include <openvdb/tools/SignedFloodFill.h>
+#include <openvdb/tools/VolumeToMesh.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
+#include <numeric>
 #include <span>
+#include <vector>
 
 #include "outcrop/core/parallel.h"
+#include "outcrop/core/rng.h"
+#include "outcrop/implicit/combine.h"
+#include "outcrop/implicit/rounded_polytope.h"
 #include "outcrop/mesh/check_mesh.h"
 #include "outcrop/mesh/polygonize.h"
 
 namespace {
 
 using outcrop::Border;
+using outcrop::FieldPtr;
 using outcrop::Parts;
 using outcrop::Points;
 using outcrop::PolygonizeOptions;
@@ -77,6 +92,202 @@ void estimate(benchmark::State& state) {
 
 void ball(benchmark::State& state, Border border, Parts parts) { mesh<Ball>(state, border, parts); }
 void hills(benchmark::State& state, Border border, Parts parts) { mesh<Hills>(state, border, parts); }
+
+constexpr double kTileSide = 20.0;
+
+/// A relief of white noise, smoothed, that carves up to 10 cm.
+outcrop::Warp rough_warp() {
+  outcrop::Image image{.width = 512, .height = 512, .channels = 1};
+  image.pixels.resize(512 * 512);
+  outcrop::Rng rng(1, "bench relief");
+  for (float& pixel : image.pixels) pixel = static_cast<float>(rng.uniform());
+  return {std::make_shared<const outcrop::Relief>(outcrop::Relief(image, 4.0).smoothed(0.1)), 0.1};
+}
+
+/// 125 rounded blocks of 20 planes around jittered places in a cube of 20 m, from (0, 0, 0).
+const FieldPtr& tile(bool warp) {
+  static const std::array<FieldPtr, 2> tiles = [] {
+    std::array<FieldPtr, 2> made;
+    for (int with_warp = 0; with_warp < 2; ++with_warp) {
+      std::vector<FieldPtr> blocks;
+      for (int i = 0; i < 125; ++i) {
+        outcrop::Rng rng(1, "bench block", i);
+        Vec3 jitter;
+        for (int axis = 0; axis < 3; ++axis) jitter[axis] = rng.uniform(-0.5, 0.5);
+        const Vec3 centre = 4.0 * (Vec3(i % 5, i / 5 % 5, i / 25) + 0.5) + jitter;
+        std::vector<outcrop::Plane> planes;
+        for (int k = 0; k < 20; ++k) {
+          const Vec3 normal = rng.direction();
+          planes.push_back({normal, -glm::dot(normal, centre) - rng.uniform(1.4, 1.9)});
+        }
+        blocks.push_back(std::make_shared<outcrop::RoundedPolytope>(planes, centre, 0.25,
+                                                                    with_warp ? rough_warp() : outcrop::Warp{}));
+      }
+      made[with_warp] = outcrop::union_of(std::move(blocks));
+    }
+    return made;
+  }();
+  return tiles[warp];
+}
+
+outcrop::Box tile_region() { return {Vec3(-2.0), Vec3(kTileSide + 2.0)}; }
+
+void mesh_tile(benchmark::State& state, double tolerance) {
+  const outcrop::ThreadLimit limit(static_cast<int>(state.range(1)));
+  const FieldPtr& field = tile(state.range(0) != 0);
+  const PolygonizeOptions options{.region = tile_region(), .resolution = 0.1, .tolerance = tolerance, .keep_voids = true};
+  std::size_t triangles = 0;
+  for (auto _ : state) triangles = outcrop::polygonize(*field, options).mesh.triangles.size();
+  report(state, triangles);
+}
+
+/// Fills leaves of 8³ voxels along the surface, narrowing on the way down as the mesher does.
+void fill(openvdb::FloatGrid::Accessor& grid, const outcrop::Field& field, const openvdb::Coord& first, int size,
+          double voxel) {
+  constexpr double kBand = 3.0;
+  const Vec3 lo = tile_region().lo + voxel * Vec3(first.x(), first.y(), first.z());
+  const outcrop::Box box{lo, lo + voxel * Vec3(size)};
+  const outcrop::Interval bound = field.bound(box);
+  if (bound.lo > kBand * voxel || bound.hi < -kBand * voxel) return;
+  const FieldPtr narrowed = field.narrow(box);
+  if (size > 8) {
+    for (int c = 0; c < 8; ++c)
+      fill(grid, *narrowed, first.offsetBy(c & 1 ? size / 2 : 0, c & 2 ? size / 2 : 0, c & 4 ? size / 2 : 0), size / 2,
+           voxel);
+    return;
+  }
+  std::array<double, 512> x, y, z, f;
+  for (int i = 0; i < 512; ++i) {
+    // A leaf's values run along z first.
+    x[i] = lo.x + voxel * (i / 64);
+    y[i] = lo.y + voxel * (i / 8 % 8);
+    z[i] = lo.z + voxel * (i % 8);
+  }
+  narrowed->values({x, y, z}, f, {});
+  auto* leaf = grid.touchLeaf(first);
+  for (int i = 0; i < 512; ++i)
+    if (std::abs(f[i]) < kBand * voxel) leaf->setValueOn(i, static_cast<float>(f[i]));
+}
+
+void mesh_tile_with_openvdb(benchmark::State& state) {
+  const outcrop::ThreadLimit limit(1);
+  openvdb::initialize();
+  const FieldPtr& field = tile(state.range(0) != 0);
+  constexpr double kVoxel = 0.1;
+  std::size_t triangles = 0;
+  for (auto _ : state) {
+    const auto grid = openvdb::FloatGrid::create(3.0f * static_cast<float>(kVoxel));
+    grid->setTransform(openvdb::math::Transform::createLinearTransform(kVoxel));
+    auto accessor = grid->getAccessor();
+    fill(accessor, *field, openvdb::Coord(0), 256, kVoxel);
+    openvdb::tools::signedFloodFill(grid->tree());
+    std::vector<openvdb::Vec3s> points;
+    std::vector<openvdb::Vec4I> quads;
+    openvdb::tools::volumeToMesh(*grid, points, quads);
+    triangles = 2 * quads.size();
+  }
+  report(state, triangles);
+}
+
+/// Hills of 80 m with one outcrop of blocks: smooth ground, and rock on a hundredth of it.
+class Ground final : public outcrop::Field {
+ public:
+  void values(const Points& p, std::span<double> values, std::span<Vec3> gradients) const noexcept override {
+    for (std::size_t i = 0; i < p.size(); ++i)
+      values[i] = (p.z[i] - 10.0 - 2.0 * std::sin(0.15 * p.x[i]) * std::sin(0.12 * p.y[i])) / kSlope;
+    for (std::size_t i = 0; i < gradients.size(); ++i)
+      gradients[i] = Vec3(-0.3 * std::cos(0.15 * p.x[i]) * std::sin(0.12 * p.y[i]),
+                          -0.24 * std::sin(0.15 * p.x[i]) * std::cos(0.12 * p.y[i]), 1.0) / kSlope;
+  }
+  [[nodiscard]] double lipschitz() const noexcept override { return 1.0; }
+
+ private:
+  static constexpr double kSlope = 1.08;
+};
+
+FieldPtr outcrop_on_hills() {
+  const outcrop::Box spot{{6, 6, 6}, {14, 14, 14}};
+  std::vector<outcrop::Plane> sides;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double sign : {-1.0, 1.0}) {
+      Vec3 normal(0.0);
+      normal[axis] = sign;
+      sides.push_back({normal, -sign * (sign < 0 ? spot.lo : spot.hi)[axis]});
+    }
+  const auto inside = std::make_shared<outcrop::RoundedPolytope>(sides, spot.centre(), 0.0);
+  return outcrop::union_of({std::make_shared<Ground>(), outcrop::intersection_of({inside, tile(true)})});
+}
+
+/// Off the surface by |f| / |∇f|, for points spread over the area: mean and root mean square.
+std::array<double, 2> errors(const outcrop::Field& field, const outcrop::TriangleMesh& mesh) {
+  constexpr std::size_t kPoints = 20'000;
+  std::vector<double> area;
+  const auto corner = [&](std::uint32_t v) { return mesh.origin + Vec3(mesh.positions[v]); };
+  for (const auto& t : mesh.triangles)
+    area.push_back(glm::length(glm::cross(corner(t[1]) - corner(t[0]), corner(t[2]) - corner(t[0]))));
+  std::partial_sum(area.begin(), area.end(), area.begin());
+  double sum = 0.0, squares = 0.0;
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    outcrop::Rng rng(1, "points", i);
+    const double place = (static_cast<double>(i) + rng.uniform()) / kPoints * area.back();
+    const auto& t = mesh.triangles[std::upper_bound(area.begin(), area.end() - 1, place) - area.begin()];
+    double u = rng.uniform(), v = rng.uniform();
+    if (u + v > 1.0) u = 1.0 - u, v = 1.0 - v;
+    const Vec3 p = (1.0 - u - v) * corner(t[0]) + u * corner(t[1]) + v * corner(t[2]);
+    const double error = std::abs(field.value(p)) / std::max(glm::length(field.gradient(p)), 0.1);
+    sum += error;
+    squares += error * error;
+  }
+  return {sum / kPoints, std::sqrt(squares / kPoints)};
+}
+
+void adaptivity(benchmark::State& state) {
+  const FieldPtr field = outcrop_on_hills();
+  PolygonizeOptions options{.region = {Vec3(0.0), {80, 80, 20}}, .resolution = 0.1};
+  const auto uniform = outcrop::polygonize(*field, options).mesh;
+  options.tolerance = 0.01 * static_cast<double>(state.range(0)) * options.resolution;
+  outcrop::TriangleMesh adaptive;
+  for (auto _ : state) adaptive = outcrop::polygonize(*field, options).mesh;
+  report(state, adaptive.triangles.size());
+  const auto before = errors(*field, uniform), after = errors(*field, adaptive);
+  state.counters["uniform_error_mean"] = before[0] / options.resolution;
+  state.counters["uniform_error_rms"] = before[1] / options.resolution;
+  state.counters["error_mean"] = after[0] / options.resolution;
+  state.counters["error_rms"] = after[1] / options.resolution;
+  state.counters["fewer"] =
+      static_cast<double>(uniform.triangles.size()) / static_cast<double>(adaptive.triangles.size());
+}
+
+void budget(benchmark::State& state) {
+  const FieldPtr field = outcrop_on_hills();
+  PolygonizeOptions options{.region = {Vec3(0.0), {80, 80, 20}}, .resolution = 0.1};
+  options.triangles = static_cast<std::size_t>(state.range(0));
+  std::size_t triangles = 0;
+  for (auto _ : state) triangles = outcrop::polygonize(*field, options).mesh.triangles.size();
+  report(state, triangles);
+}
+
+// Arguments: relief or not, threads.
+BENCHMARK_CAPTURE(mesh_tile, uniform, 0.0)
+    ->ArgNames({"warp", "threads"})
+    ->Args({0, 1})
+    ->Args({1, 1})
+    ->Args({1, 2})
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(mesh_tile, adaptive, 0.05)
+    ->ArgNames({"warp", "threads"})
+    ->Args({1, 1})
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime();
+BENCHMARK(mesh_tile_with_openvdb)
+    ->ArgNames({"warp"})
+    ->Arg(0)
+    ->Arg(1)
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime();
+BENCHMARK(adaptivity)->ArgNames({"tolerance_percent"})->Arg(10)->Arg(25)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
+BENCHMARK(budget)->ArgNames({"wanted"})->Arg(200'000)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
 
 // Arguments: cells along the region, threads. CPU time of all threads, so that rates are those of one core.
 BENCHMARK_CAPTURE(ball, sheet, Border::Open, Parts::All)

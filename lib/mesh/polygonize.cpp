@@ -1,90 +1,38 @@
 #include "outcrop/mesh/polygonize.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
 #include <optional>
-#include <utility>
-#include <vector>
 
 #include "budget.h"
+#include "error_samples.h"
 #include "lattice.h"
 #include "mesh_region.h"
 #include "outcrop/core/error.h"
-#include "outcrop/core/parallel.h"
-#include "outcrop/core/rng.h"
-#include "outcrop/mesh/marching_cubes.h"
 
 namespace outcrop {
 namespace {
 
-using meshing::Brick;
-using meshing::BrickValues;
-using meshing::Cell;
+using meshing::ErrorSamples;
+using meshing::kBalance;
 using meshing::Lattice;
 using meshing::TriangleBudget;
 
-/// Octree cells that the estimate follows at each level, and bricks that it evaluates.
-constexpr std::size_t kSampledCells = 1024;
 /// Peak bytes of polygonize: positions, normals and labels twice while chunks are joined, sides and sets of vertices,
 /// the flags of triangles.
 constexpr std::size_t kBytesAVertex = 2 * (2 * sizeof(Vec3f) + sizeof(Label)) + 3 * sizeof(std::uint32_t);
 constexpr std::size_t kBytesATriangle = sizeof(std::array<std::uint32_t, 3>) + sizeof(std::uint32_t) + 1;
 
-PolygonizeEstimate estimate(const Field& field, const Lattice& lattice, const Task& task) {
-  std::vector<Cell> cells = root_cells(lattice, field);
-  double weight = 1.0;
-  // One cell of every so many in Morton order stands for its neighbours: spread evenly over the surface. Which one is
-  // random, since the order has periods of its own.
-  const auto thin_out = [&](int level) {
-    if (cells.size() <= kSampledCells) return;
-    const double stride = static_cast<double>(cells.size()) / kSampledCells;
-    Rng rng(0, "estimate", static_cast<std::uint64_t>(level));
-    for (std::size_t i = 0; i < kSampledCells; ++i) {
-      const double place = static_cast<double>(i) + rng.uniform();
-      cells[i] = cells[static_cast<std::size_t>(place * stride)];
-    }
-    cells.resize(kSampledCells);
-    weight *= stride;
-  };
-  for (int level = root_level(lattice); level > 0; --level) {
-    const auto children = parallel_map(
-        cells.size(), [&](std::size_t i) { return split(lattice, cells[i], level); }, task);
-    cells.clear();
-    for (const auto& part : children) cells.insert(cells.end(), part.begin(), part.end());
-    thin_out(level);
-  }
-  struct Count {
-    std::size_t bricks = 0, cells = 0, triangles = 0;
-  };
-  const auto counts = parallel_map(
-      cells.size(),
-      [&](std::size_t i) {
-        Count count;
-        Brick brick(lattice, cells[i].index, 0);
-        BrickValues values;
-        if (values.sample(lattice, *cells[i].field->narrow(lattice.box(cells[i].index, 0)), brick)) count.bricks = 1;
-        brick.for_each_mixed_cell([&](int, int cube_case) {
-          ++count.cells;
-          count.triangles += CaseTable::cube()[cube_case].size();
-        });
-        return count;
-      },
-      task);
-  Count sum;
-  for (const Count& c : counts) {
-    sum.bricks += c.bricks;
-    sum.cells += c.cells;
-    sum.triangles += c.triangles;
-  }
-  const auto scaled = [&](std::size_t n) {
-    return static_cast<std::size_t>(std::llround(weight * static_cast<double>(n)));
-  };
-  PolygonizeEstimate result{.cells = scaled(sum.cells), .triangles = scaled(sum.triangles)};
+PolygonizeEstimate estimate(const Field& field, const PolygonizeOptions& options, const Task& task) {
+  const Lattice lattice = Lattice::over(options);
+  const auto counts = ErrorSamples(field, lattice, task).expected(options.tolerance);
+  const double balance = lattice.coarsest == 0 ? 1.0 : kBalance;
+  const auto rounded = [](double n) { return static_cast<std::size_t>(std::llround(n)); };
+  PolygonizeEstimate result{.cells = rounded(balance * counts.cells), .triangles = rounded(balance * counts.triangles)};
+  if (options.triangles > 0) result = {.cells = options.triangles / 2, .triangles = options.triangles};
   // A triangle mesh has about half as many vertices as triangles.
-  result.bytes =
-      result.triangles / 2 * kBytesAVertex + result.triangles * kBytesATriangle;
+  result.bytes = result.triangles / 2 * kBytesAVertex + result.triangles * kBytesATriangle;
   return result;
 }
 
@@ -121,8 +69,7 @@ PolygonizeResult polygonize(const Field& field, const PolygonizeOptions& options
 PolygonizeStatistics polygonize_pieces(const Field& field, const PolygonizeOptions& options, const PieceOptions& pieces,
                                        std::span<MeshSink* const> sinks, const Task& task) {
   require(pieces.chunks >= 1, "chunks", "at least 1", static_cast<double>(pieces.chunks));
-  const Lattice lattice = Lattice::over(options);
-  if (options.memory_limit > 0) require_memory(estimate(field, lattice, task), options);
+  if (options.memory_limit > 0 && pieces.spool.empty()) require_memory(estimate(field, options, task), options);
   std::optional<TriangleBudget> budget;
   if (options.triangles > 0) budget.emplace(field, options, task);
   for (;;) {
@@ -136,7 +83,7 @@ PolygonizeStatistics polygonize_pieces(const Field& field, const PolygonizeOptio
 }
 
 PolygonizeEstimate estimate_polygonize(const Field& field, const PolygonizeOptions& options, const Task& task) {
-  return estimate(field, Lattice::over(options), task);
+  return estimate(field, options, task);
 }
 
 }  // namespace outcrop
