@@ -1,157 +1,242 @@
 #include "outcrop/fracture/samples.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstring>
+#include <glm/vector_relational.hpp>
 
+#include "cell_grid.h"
 #include "outcrop/core/error.h"
+#include "outcrop/core/simd.h"
 #include "wrapped_grid.h"
 
 namespace outcrop {
 namespace {
 
-// Darts a live cube and round: few, since cubes that stay uncovered are halved and tried again.
-constexpr double kDartsPerCube = 1.5;
-constexpr int kMaxLevel = 20;  // Cubes of a millionth of the spacing: what is left uncovered then is rounding.
+constexpr int kReach = CellGrid::kReach;
+constexpr int kHalo = 4;     // Cells beyond each border, for images of samples near the other: reach, and whole blocks.
+constexpr int kSweeps = 16;  // Of single darts into cubes that may have room, before gaps are searched.
+constexpr int kFirstShare = 8;  // The first two sweeps throw at one open cube in 2⁸, the next two at one in 2⁷, …
+constexpr int kMaxHalvings = 20;  // To cubes of a millionth of the spacing: what is left uncovered then is rounding.
 
-// Maximal Poisson-disc sampling by darts into an ever finer list of uncovered cubes (Ebeida et al. 2012).
+/// Eight floats: one register of AVX, two of SSE2. Lane by lane, so the bits are the same.
+using Eight [[gnu::vector_size(8 * sizeof(float))]] = float;
+using EightInts [[gnu::vector_size(8 * sizeof(float))]] = std::int32_t;
+
+/// Samples that reach a cube, from its lower corner.
+struct Near {
+  // Balls of half the spacing around them do not overlap and lie within 1.5 spacings of the cube: 40 at most.
+  static constexpr int kMost = 64;
+  int count = 0;
+  float x[kMost], y[kMost], z[kMost];
+};
+
+struct Cube {
+  float x, y, z;  // The lower corner.
+};
+
+struct Darts {
+  float x[8], y[8], z[8];
+};
+
+[[gnu::always_inline]] inline Eight load(const float* from) {
+  Eight v;
+  std::memcpy(&v, from, sizeof v);
+  return v;
+}
+
+[[gnu::always_inline]] inline Eight magnitude(const Eight& v) { return (Eight)((EightInts)v & 0x7FFFFFFF); }
+
+// Whether one sample covers all of a cube of half-width `half`, for eight centres: a bit each. Points for a half of 0.
+[[gnu::always_inline]] inline unsigned covered(const Near& near, const Eight& x, const Eight& y, const Eight& z,
+                                               float half, float reach) {
+  Eight least = Eight{} + 1e30f;
+  for (int i = 0; i < near.count; ++i) {
+    const Eight dx = magnitude(x - near.x[i]) + half;  // to the farthest corner
+    const Eight dy = magnitude(y - near.y[i]) + half;
+    const Eight dz = magnitude(z - near.z[i]) + half;
+    const Eight d = dx * dx + dy * dy + dz * dz;
+    least = d < least ? d : least;
+  }
+  unsigned bits = 0;
+  for (int lane = 0; lane < 8; ++lane) bits |= unsigned{least[lane] < reach} << lane;
+  return bits;
+}
+
+// The children of a cube, x running fastest, that a single sample covers. `quarter`: of the cube's width.
+OUTCROP_SIMD_CLONES unsigned covered_children(const Near& near, const Cube& cube, float quarter, float reach) {
+  constexpr Eight kX{1, 3, 1, 3, 1, 3, 1, 3}, kY{1, 1, 3, 3, 1, 1, 3, 3}, kZ{1, 1, 1, 1, 3, 3, 3, 3};
+  return covered(near, kX * quarter + cube.x, kY * quarter + cube.y, kZ * quarter + cube.z, quarter, reach);
+}
+
+OUTCROP_SIMD_CLONES unsigned covered_darts(const Near& near, const Darts& darts, float reach) {
+  return covered(near, load(darts.x), load(darts.y), load(darts.z), 0.0f, reach);
+}
+
+// A point of [0, 1)³, in floats without rounding.
+Vec3f draw_point(Rng& rng) {
+  const std::uint64_t bits = rng.next();
+  constexpr std::uint64_t kMask = (1u << 21) - 1;
+  return Vec3f(bits & kMask, bits >> 21 & kMask, bits >> 42 & kMask) * 0x1.0p-21f;
+}
+
+// All bits with a probability of 2⁻ˢʰᵃʳᵉ.
+std::uint64_t draw_bits(Rng& rng, int share) {
+  std::uint64_t bits = ~std::uint64_t{0};
+  for (int i = 0; i < share; ++i) bits &= rng.next();
+  return bits;
+}
+
+// Maximal Poisson-disc sampling. As in Ebeida et al. 2012, darts go only where there may be room, cubes that no single
+// sample covers; but the list of these cubes is a set of bits, kept up to date by every sample, and what the darts
+// leave is halved and searched cube by cube. All passes run through memory in order, so that the cost a sample does not
+// grow.
+//
+// Lengths are in cells. Positions are exact: their images are whole cells away.
 class MaximalSampler {
  public:
   MaximalSampler(double side, double spacing)
       : side_(side),
-        spacing_(spacing),
-        // Cubes no wider than spacing / √3 hold one sample at most.
+        // Cells no wider than spacing / √3 hold one sample at most. At a side of four spacings or more they are wider
+        // than half the spacing, so that kReach suffices.
         count_(static_cast<int>(std::ceil(side * std::sqrt(3.0) / spacing))),
-        sample_in_(static_cast<std::size_t>(count_) * count_ * count_, -1) {
-    for (int z = -2; z <= 2; ++z)
-      for (int y = -2; y <= 2; ++y)
-        for (int x = -2; x <= 2; ++x) {
-          const IVec3 gap = glm::max(glm::abs(IVec3(x, y, z)) - 1, IVec3(0));
-          const double nearest = std::sqrt(static_cast<double>(gap.x + gap.y + gap.z)) * side / count_;
-          if (nearest < spacing) offsets_.push_back({x, y, z});
-        }
-    // Nearest first: what stands in the way of a dart is mostly close to it.
-    std::stable_sort(offsets_.begin(), offsets_.end(), [](const IVec3& a, const IVec3& b) {
-      return a.x * a.x + a.y * a.y + a.z * a.z < b.x * b.x + b.y * b.y + b.z * b.z;
-    });
-    for (const IVec3& o : offsets_) steps_.push_back((static_cast<std::ptrdiff_t>(o.z) * count_ + o.y) * count_ + o.x);
+        // By a little more than the spacing, so that rounding to metres does not break it.
+        reach_(spacing * spacing * count_ * count_ / (side * side) * (1.0 + 1e-12)),
+        grid_(count_ + 2 * kHalo),
+        open_(2 * (count_ + 2 * kHalo)) {
+    for (int z = 0; z < 2 * count_; ++z)
+      for (int y = 0; y < 2 * count_; ++y)
+        for (int x = 0; x < 2 * count_; ++x) open_.insert(IVec3(x, y, z) + 2 * kHalo);
   }
 
   std::vector<Vec3> run(Seed seed, const Task& task) {
-    std::vector<IVec3> cubes;
-    cubes.reserve(sample_in_.size());
-    for (int z = 0; z < count_; ++z)
-      for (int y = 0; y < count_; ++y)
-        for (int x = 0; x < count_; ++x) cubes.push_back({x, y, z});
-    for (int level = 0; level <= kMaxLevel && !cubes.empty(); ++level) {
+    // Few darts at first: a sweep that filled the tile from one end to the other would pack it more tightly.
+    for (int sweep = 0; sweep < kSweeps; ++sweep) {
       task.check();
-      Rng rng(seed, "samples", static_cast<std::uint64_t>(level));
-      throw_darts(cubes, level, rng);
-      cubes = uncovered_children(cubes, level);
+      Rng rng(seed, "samples", static_cast<std::uint64_t>(sweep));
+      const int share = std::max(1, kFirstShare - sweep / 2);
+      open_.visit([&] { return draw_bits(rng, share); },
+                  [&](const IVec3& cube) {
+                    const Vec3 p = 0.5 * (Vec3(cube) + Vec3(draw_point(rng)));
+                    insert_if_free(cube >> 1, p);
+                  });
     }
+    task.check();
+    Rng rng(seed, "samples", kSweeps);
+    open_.visit([] { return ~std::uint64_t{0}; }, [&](const IVec3& cube) { search(cube, rng); });
     return std::move(samples_);
   }
 
  private:
-  void throw_darts(const std::vector<IVec3>& cubes, int level, Rng& rng) {
-    const auto darts = static_cast<std::size_t>(kDartsPerCube * static_cast<double>(cubes.size())) + 1;
-    const double width = side_ / count_ / static_cast<double>(1 << level);
-    for (std::size_t dart = 0; dart < darts; ++dart) {
-      const IVec3 cube = cubes[rng.below(cubes.size())];
-      const double x = rng.uniform();
-      const double y = rng.uniform();
-      const double z = rng.uniform();
-      const IVec3 base = cube >> level;
-      if (at(base) >= 0) continue;
-      const Vec3 p = (Vec3(cube) + Vec3(x, y, z)) * width;
-      if (p.x >= side_ || p.y >= side_ || p.z >= side_ || !is_free(p, base)) continue;
-      at(base) = static_cast<std::int32_t>(samples_.size());
-      samples_.push_back(p);
-    }
-  }
-
-  std::vector<IVec3> uncovered_children(const std::vector<IVec3>& cubes, int level) {
-    const double half = side_ / count_ / static_cast<double>(2 << level) / 2.0;
-    const double reach = spacing_ * spacing_;
-    std::vector<IVec3> children;
-    std::vector<Vec3> around;  // the samples around `around_base`, unwrapped: cubes of one base follow each other
-    std::vector<Vec3> near;
-    IVec3 around_base(-1);
-    for (const IVec3& cube : cubes) {
-      const IVec3 base = cube >> level;
-      if (at(base) >= 0) continue;
-      const Vec3 middle = (2.0 * Vec3(cube) + 1.0) * (2.0 * half);
-      if (base != around_base) {
-        around_base = base;
-        around.clear();
-        visit_around(base, [&](const Vec3& p) {
-          around.push_back(p);
-          return true;
-        });
-      }
-      // The middle is a corner of every child: a sample that covers a child covers it.
-      near.clear();
-      for (const Vec3& p : around)
-        if (const Vec3 d = p - middle; glm::dot(d, d) < reach) near.push_back(d);
-      for (int corner = 0; corner < 8; ++corner) {
-        const IVec3 step(corner & 1, corner >> 1 & 1, corner >> 2);
-        const Vec3 offset = (2.0 * Vec3(step) - 1.0) * half;
-        bool covered = false;
-        for (std::size_t i = 0; i < near.size() && !covered; ++i) {
-          const Vec3 far = glm::abs(near[i] - offset) + half;  // to the corner farthest from the sample
-          covered = glm::dot(far, far) < reach;
-        }
-        if (!covered) children.push_back(2 * cube + step);
-      }
-    }
-    return children;
-  }
-
-  [[nodiscard]] bool is_free(const Vec3& p, const IVec3& base) const {
-    return visit_around(base, [&](const Vec3& q) {
+  bool insert_if_free(const IVec3& cell, const Vec3& p) {
+    const bool is_free = grid_.visit_around(cell, [&](const Vec3& q) {
       const Vec3 d = q - p;
-      return glm::dot(d, d) >= spacing_ * spacing_;
+      return glm::dot(d, d) >= reach_;
     });
-  }
-
-  // Calls `visit(sample)` for what may lie within the spacing of a cube, until it returns false. The sample is moved by
-  // whole tiles to lie beside the cube.
-  template <class F>
-  bool visit_around(const IVec3& base, F&& visit) const {
-    const bool is_inner =
-        glm::min(base.x, glm::min(base.y, base.z)) >= 2 && glm::max(base.x, glm::max(base.y, base.z)) < count_ - 2;
-    if (is_inner) {  // the common case, without wrapping: half of the time goes here
-      const std::int32_t* const cell = &sample_in_[index(base)];
-      for (const std::ptrdiff_t step : steps_)
-        if (const std::int32_t i = cell[step]; i >= 0)
-          if (!visit(samples_[static_cast<std::size_t>(i)])) return false;
-      return true;
-    }
-    for (const IVec3& offset : offsets_) {
-      const IVec3 c = wrapped(base + offset);
-      if (const std::int32_t i = sample_in_[index(c)]; i >= 0) {
-        const IVec3 tiles = (base + offset - c) / count_;
-        if (!visit(samples_[static_cast<std::size_t>(i)] + side_ * Vec3(tiles))) return false;
-      }
-    }
+    const Vec3 sample = (p - double{kHalo}) * (side_ / count_);
+    if (!is_free || sample.x >= side_ || sample.y >= side_ || sample.z >= side_) return false;
+    samples_.push_back(sample);
+    const IVec3 lo(glm::greaterThanEqual(cell, IVec3(count_ + kHalo - kReach)));
+    const IVec3 hi(glm::lessThan(cell, IVec3(kHalo + kReach)));
+    for (int z = -lo.z; z <= hi.z; ++z)
+      for (int y = -lo.y; y <= hi.y; ++y)
+        for (int x = -lo.x; x <= hi.x; ++x) {
+          const IVec3 turn = count_ * IVec3(x, y, z);
+          grid_.insert(cell + turn, p + Vec3(turn));
+          close_around(p + Vec3(turn));
+        }
     return true;
   }
 
-  [[nodiscard]] IVec3 wrapped(IVec3 c) const {
-    for (int axis = 0; axis < 3; ++axis) c[axis] += c[axis] < 0 ? count_ : c[axis] >= count_ ? -count_ : 0;
-    return c;
+  // Takes out the cubes that the sample covers: none is more than kFar cubes away, as 2 √reach_ < 4.
+  void close_around(const Vec3& p) {
+    constexpr int kFar = 3;
+    const Vec3 q = 2.0 * p;
+    const IVec3 cube(q);
+    float far[3][2 * kFar + 1];  // squares of the distances to the farther sides of the cubes, in cubes
+    for (int axis = 0; axis < 3; ++axis)
+      for (int i = -kFar; i <= kFar; ++i) {
+        const auto d = static_cast<float>(std::abs(q[axis] - (cube[axis] + i + 0.5)) + 0.5);
+        far[axis][i + kFar] = d * d;
+      }
+    const auto reach = static_cast<float>(4.0 * reach_);
+    for (int z = 0; z <= 2 * kFar; ++z)
+      for (int y = 0; y <= 2 * kFar; ++y) {
+        const float rest = reach - far[2][z] - far[1][y];
+        if (rest <= 0.0f) continue;
+        std::uint64_t covered = 0;
+        for (int x = 0; x <= 2 * kFar; ++x) covered |= std::uint64_t{far[0][x] < rest} << x;
+        open_.erase(cube + IVec3(0, y, z) - kFar, covered);
+      }
   }
-  [[nodiscard]] std::size_t index(const IVec3& c) const {
-    return (static_cast<std::size_t>(c.z) * count_ + c.y) * count_ + c.x;
+
+  // A sample in what no other covers of the cube, evenly over it, if there is any.
+  void search(const IVec3& start, Rng& rng) {
+    const IVec3 cell = start >> 1;
+    const Vec3 corner = 0.5 * Vec3(start);
+    const auto reach = static_cast<float>(reach_);
+    collect_near(cell, corner);
+    cubes_.assign(1, Cube{0.0f, 0.0f, 0.0f});
+    float width = 0.5f;
+    for (int halving = 0; halving < kMaxHalvings; ++halving) {
+      halve_cubes(width);
+      width *= 0.5f;
+      for (std::size_t thrown = 0; thrown < cubes_.size(); thrown += 8) {
+        Darts darts;
+        for (int i = 0; i < 8; ++i) {
+          const Cube& cube = cubes_[rng.below(cubes_.size())];
+          const Vec3f p = draw_point(rng);
+          darts.x[i] = cube.x + width * p.x;
+          darts.y[i] = cube.y + width * p.y;
+          darts.z[i] = cube.z + width * p.z;
+        }
+        for (unsigned open = ~covered_darts(near_, darts, reach) & 0xFF; open != 0; open &= open - 1) {
+          const int i = std::countr_zero(open);
+          if (insert_if_free(cell, corner + Vec3(darts.x[i], darts.y[i], darts.z[i]))) return;
+        }
+      }
+      if (cubes_.empty()) return;
+    }
   }
-  [[nodiscard]] std::int32_t& at(const IVec3& c) { return sample_in_[index(c)]; }
+
+  void collect_near(const IVec3& cell, const Vec3& corner) {
+    const auto gap = [](float v) { return std::max(std::abs(v - 0.25f) - 0.25f, 0.0f); };
+    const auto reach = static_cast<float>(reach_);
+    near_.count = 0;
+    grid_.visit_around(cell, [&](const Vec3& p) {
+      const Vec3f q(p - corner);
+      near_.x[near_.count] = q.x;
+      near_.y[near_.count] = q.y;
+      near_.z[near_.count] = q.z;
+      near_.count += gap(q.x) * gap(q.x) + gap(q.y) * gap(q.y) + gap(q.z) * gap(q.z) < reach;
+      return true;
+    });
+  }
+
+  // Puts the children that no single sample covers in the place of the cubes.
+  void halve_cubes(float width) {
+    children_.clear();
+    const float half = 0.5f * width;
+    for (const Cube& cube : cubes_) {
+      const unsigned covered = covered_children(near_, cube, 0.5f * half, static_cast<float>(reach_));
+      for (unsigned open = ~covered & 0xFF; open != 0; open &= open - 1) {
+        const int i = std::countr_zero(open);
+        children_.push_back({cube.x + half * static_cast<float>(i & 1), cube.y + half * static_cast<float>(i >> 1 & 1),
+                             cube.z + half * static_cast<float>(i >> 2)});
+      }
+    }
+    std::swap(cubes_, children_);
+  }
 
   double side_;
-  double spacing_;
-  int count_;
-  std::vector<std::int32_t> sample_in_;
-  std::vector<IVec3> offsets_;         // Cubes around a cube that may hold a sample within the spacing.
-  std::vector<std::ptrdiff_t> steps_;  // The same as steps in sample_in_.
+  int count_;     // Cells along a side.
+  double reach_;  // The spacing's square.
+  CellGrid grid_;
+  CubeSet open_;  // Cubes of half a cell that no sample covers.
   std::vector<Vec3> samples_;
+  Near near_;                           // To the cube that is searched.
+  std::vector<Cube> cubes_, children_;  // Of that cube, from its lower corner.
 };
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/trigonometric.hpp>
 
 #include "outcrop/core/error.h"
 
@@ -41,6 +42,32 @@ TEST(PoissonSamples, HaveTheJammingDensityWhateverTheSide) {
   for (const double side : {2.0, 20.0, 300.0}) {
     const auto count = static_cast<double>(poisson_samples(side, side / 14.0, 5).size());
     EXPECT_NEAR(count, 0.384 * 6.0 / kPi * 14.0 * 14.0 * 14.0, 0.04 * count);
+  }
+}
+
+TEST(PoissonSamples, ShowNeitherADirectionNorTheGridTheyAreMadeIn) {
+  const double side = 10.0;
+  const double spacing = 0.4;
+  const double cells = std::ceil(side * std::sqrt(3.0) / spacing);
+  Mat3 directions(0.0);  // the mean of d dᵀ over neighbours: a third of the identity
+  Vec3 phase(0.0);       // of places in half cells: 0 for even ones, up to 1 for rows of equal ones
+  double pairs = 0.0;
+  double count = 0.0;
+  for (Seed seed = 1; seed <= 4; ++seed) {
+    const auto samples = poisson_samples(side, spacing, seed);
+    const Graph graph = neighbour_graph(samples, side, 1.2 * spacing);
+    for (std::uint32_t i = 0; i < samples.size(); ++i, count += 1.0) {
+      phase += glm::cos(4.0 * kPi * cells / side * samples[i]);
+      for (std::uint32_t e = graph.first[i]; e < graph.first[i + 1]; ++e, pairs += 1.0) {
+        const Vec3 d = glm::normalize(wrapped_difference(samples[i], samples[graph.targets[e]], side));
+        directions += glm::outerProduct(d, d);
+      }
+    }
+  }
+  for (int row = 0; row < 3; ++row) {
+    EXPECT_LT(std::abs(phase[row] / count), 0.06);
+    for (int column = 0; column < 3; ++column)
+      EXPECT_NEAR(directions[column][row] / pairs, row == column ? 1.0 / 3.0 : 0.0, 0.003);
   }
 }
 
