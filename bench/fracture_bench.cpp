@@ -22,10 +22,19 @@ void tile(benchmark::State& state) {
 }
 BENCHMARK(tile)->DenseRange(0, 5)->Unit(benchmark::kMillisecond);
 
-// The same rock in a tile of n times the samples: the time a sample must not grow.
-void growth(benchmark::State& state) {
+void grow(benchmark::State& state, const TileOptions& options) {
   const ThreadLimit one(1);
-  const double spacing = 20.0 / kSpacingsPerSide;
+  TileStatistics statistics;
+  for (auto _ : state) statistics = make_tile(options, 1).statistics;
+  const auto samples = static_cast<double>(statistics.samples);
+  state.counters["samples"] = samples;
+  state.counters["blocks"] = static_cast<double>(statistics.clusters);
+  state.counters["time/sample"] =
+      benchmark::Counter(samples, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+// The same rock in a tile of n times the volume, n times the samples and joints: the time a sample must not grow.
+void growth(benchmark::State& state) {
   const double side = 20.0 * std::cbrt(static_cast<double>(state.range(0)));
   JointPattern pattern = joint_pattern(BlockType::Polyhedral);
   pattern.discs *= static_cast<int>(state.range(0));  // the same joints a volume, as long in metres
@@ -35,15 +44,17 @@ void growth(benchmark::State& state) {
   }
   pattern.centre_spacing *= 20.0 / side;
   pattern.least_thickness *= 20.0 / side;
-  std::size_t samples = 0;
-  for (auto _ : state)
-    samples = make_tile({.type = BlockType::Polyhedral, .pattern = pattern, .side = side, .spacing = spacing}, 1)
-                  .statistics.samples;
-  state.counters["samples"] = static_cast<double>(samples);
-  state.counters["time/sample"] = benchmark::Counter(
-      static_cast<double>(samples), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  grow(state,
+       {.type = BlockType::Polyhedral, .pattern = pattern, .side = side, .spacing = 20.0 / kSpacingsPerSide});
 }
-BENCHMARK(growth)->Arg(1)->Arg(10)->Unit(benchmark::kMillisecond);
+BENCHMARK(growth)->Arg(1)->Arg(10)->Arg(70)->Unit(benchmark::kMillisecond);
+
+// The same joints in the same tile, judged by n times the samples.
+void refinement(benchmark::State& state) {
+  const double finer = std::cbrt(static_cast<double>(state.range(0)));
+  grow(state, {.type = BlockType::Polyhedral, .spacing = 20.0 / kSpacingsPerSide / finer});
+}
+BENCHMARK(refinement)->Arg(1)->Arg(10)->Arg(70)->Unit(benchmark::kMillisecond);
 
 void samples(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(poisson_samples(20.0, 20.0 / kSpacingsPerSide, 1));

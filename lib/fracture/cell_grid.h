@@ -30,6 +30,20 @@ class CellGrid {
     points_.push_back(p);
   }
 
+  /// Calls `visit(cell, point)` for all points, block by block.
+  template <class F>
+  void visit(F&& visit) const {
+    std::size_t b = 0;
+    for (int z = 0; z < blocks_; ++z)
+      for (int y = 0; y < blocks_; ++y)
+        for (int x = 0; x < blocks_; ++x, ++b)
+          for (std::uint64_t bits = occupied_[b]; bits != 0; bits &= bits - 1) {
+            const int bit = std::countr_zero(bits);
+            visit(4 * IVec3(x, y, z) + IVec3(bit & 3, bit >> 2 & 3, bit >> 4),
+                  points_[point_in_[64 * b + static_cast<std::size_t>(bit)]]);
+          }
+  }
+
   /// Calls `visit(point)` for the points in the 5³ cells around a cell, until it returns false; then it does, too.
   /// @param cell  At least kReach cells from the border.
   template <class F>

@@ -125,7 +125,7 @@ class MaximalSampler {
     task.check();
     Rng rng(seed, "samples", kSweeps);
     open_.visit([] { return ~std::uint64_t{0}; }, [&](const IVec3& cube) { search(cube, rng); });
-    return std::move(samples_);
+    return samples();
   }
 
  private:
@@ -134,9 +134,7 @@ class MaximalSampler {
       const Vec3 d = q - p;
       return glm::dot(d, d) >= reach_;
     });
-    const Vec3 sample = (p - double{kHalo}) * (side_ / count_);
-    if (!is_free || sample.x >= side_ || sample.y >= side_ || sample.z >= side_) return false;
-    samples_.push_back(sample);
+    if (!is_free || glm::any(glm::greaterThanEqual(p, Vec3(count_ + kHalo)))) return false;  // beyond by rounding
     const IVec3 lo(glm::greaterThanEqual(cell, IVec3(count_ + kHalo - kReach)));
     const IVec3 hi(glm::lessThan(cell, IVec3(kHalo + kReach)));
     for (int z = -lo.z; z <= hi.z; ++z)
@@ -229,12 +227,22 @@ class MaximalSampler {
     std::swap(cubes_, children_);
   }
 
+  // In metres, block of cells by block of cells: whoever goes through them finds neighbours close by in memory.
+  [[nodiscard]] std::vector<Vec3> samples() const {
+    std::vector<Vec3> result;
+    grid_.visit([&](const IVec3& cell, const Vec3& p) {
+      const IVec3 c = cell - kHalo;
+      if (std::min({c.x, c.y, c.z}) >= 0 && std::max({c.x, c.y, c.z}) < count_)
+        result.push_back((p - double{kHalo}) * (side_ / count_));
+    });
+    return result;
+  }
+
   double side_;
   int count_;     // Cells along a side.
   double reach_;  // The spacing's square.
   CellGrid grid_;
-  CubeSet open_;  // Cubes of half a cell that no sample covers.
-  std::vector<Vec3> samples_;
+  CubeSet open_;                        // Cubes of half a cell that no sample covers.
   Near near_;                           // To the cube that is searched.
   std::vector<Cube> cubes_, children_;  // Of that cube, from its lower corner.
 };
@@ -260,18 +268,24 @@ std::vector<Vec3> poisson_samples(double side, double spacing, Seed seed, const 
 
 Graph neighbour_graph(const std::vector<Vec3>& samples, double side, double radius) {
   require(radius > 0.0 && radius < side / 2.0, "radius", "in (0, side / 2)", radius);
-  WrappedGrid grid(side, radius);
-  for (const Vec3& p : samples) grid.insert(p);
+  const SortedCells cells(samples, side, radius);
   Graph graph;
   graph.first.reserve(samples.size() + 1);
   graph.first.push_back(0);
+  std::size_t found = 0;
   for (std::uint32_t i = 0; i < samples.size(); ++i) {
-    grid.visit_near(samples[i], [&](std::uint32_t j) {
-      const Vec3 d = wrapped_difference(samples[i], samples[j], side);
-      if (j != i && glm::dot(d, d) <= radius * radius) graph.targets.push_back(j);
+    cells.visit_near(samples[i], [&](std::span<const SortedCells::Entry> some, const Vec3& turn) {
+      if (graph.targets.size() < found + some.size()) graph.targets.resize(2 * found + some.size());
+      const Vec3 from = samples[i] - turn;
+      for (const auto& [p, j] : some) {  // without branches: one in six is near enough
+        const Vec3 d = p - from;
+        graph.targets[found] = j;
+        found += static_cast<std::size_t>(j != i) & static_cast<std::size_t>(glm::dot(d, d) <= radius * radius);
+      }
     });
-    graph.first.push_back(static_cast<std::uint32_t>(graph.targets.size()));
+    graph.first.push_back(static_cast<std::uint32_t>(found));
   }
+  graph.targets.resize(found);
   return graph;
 }
 

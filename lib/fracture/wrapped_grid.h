@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "outcrop/core/vec.h"
@@ -52,6 +53,56 @@ class WrappedGrid {
   double scale_;
   std::vector<std::int32_t> head_;
   std::vector<std::int32_t> next_;
+};
+
+/// The same for points that are all known: sorted by cell, for long runs through memory.
+class SortedCells {
+ public:
+  struct Entry {
+    Vec3 p;
+    std::uint32_t index;
+  };
+
+  SortedCells(const std::vector<Vec3>& points, double side, double reach)
+      : side_(side),
+        count_(std::clamp(static_cast<int>(side / reach), 1, kMaxCells)),
+        first_(static_cast<std::size_t>(count_) * count_ * count_ + 1, 0),
+        entries_(points.size()) {
+    for (const Vec3& p : points) ++first_[index(cell(p))];
+    std::uint32_t sum = 0;  // the end of each cell, from where its points are put in backwards
+    for (std::uint32_t& first : first_) first = sum += first;
+    for (std::size_t i = points.size(); i-- > 0;)
+      entries_[--first_[index(cell(points[i]))]] = {points[i], static_cast<std::uint32_t>(i)};
+  }
+
+  /// Calls `visit(entries, turn)` for runs of entries that hold all points within `reach` of p, of [0, side)³: those
+  /// moved by `turn` may be near. All images of a point are met.
+  template <class F>
+  void visit_near(const Vec3& p, F&& visit) const {
+    const IVec3 c = cell(p);
+    for (int z = c.z - 1; z <= c.z + 1; ++z)
+      for (int y = c.y - 1; y <= c.y + 1; ++y)
+        for (int x = c.x - 1, end; x <= c.x + 1; x = end) {
+          const IVec3 tile(turns(x), turns(y), turns(z));
+          end = std::min(c.x + 2, count_ * (tile.x + 1));  // cells along x follow each other, up to the border
+          const std::size_t from = index(IVec3(x, y, z) - count_ * tile);
+          visit(std::span(entries_).subspan(first_[from], first_[from + (end - x)] - first_[from]), side_ * Vec3(tile));
+        }
+  }
+
+ private:
+  static constexpr int kMaxCells = 256;
+
+  [[nodiscard]] IVec3 cell(const Vec3& p) const { return glm::min(IVec3(p * (count_ / side_)), IVec3(count_ - 1)); }
+  [[nodiscard]] int turns(int c) const { return c < 0 ? -1 : c >= count_ ? 1 : 0; }
+  [[nodiscard]] std::size_t index(const IVec3& c) const {
+    return (static_cast<std::size_t>(c.z) * count_ + c.y) * count_ + c.x;
+  }
+
+  double side_;
+  int count_;
+  std::vector<std::uint32_t> first_;
+  std::vector<Entry> entries_;
 };
 
 }  // namespace outcrop
