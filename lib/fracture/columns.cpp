@@ -125,17 +125,24 @@ std::vector<Region> column_regions(const std::vector<Vec3>& samples, double side
     for (const Edge& edge : voronoi_cell(seeds, grid, i, side))
       columns[i].walls.push_back({{edge.normal, -glm::dot(edge.normal, seeds[i]) - edge.distance}, kColumnJoint});
   }
+  const SortedCells near(seeds, side, width);  // wide enough for almost every sample
   for (std::uint32_t k = 0; k < samples.size(); ++k) {
     const Vec3 foot(samples[k].x, samples[k].y, 0.0);
     std::size_t nearest = 0;
-    double least = 1e300;
-    grid.visit_near(foot, [&](std::uint32_t j) {
-      const double d = wrapped_distance(foot, seeds[j], side);
-      if (d < least) {
-        least = d;
+    double least = width * width;
+    const auto consider = [&](const Vec3& d, std::uint32_t j) {
+      if (const double square = glm::dot(d, d); square < least) {
+        least = square;
         nearest = j;
       }
+    };
+    near.visit_near(foot, [&](std::span<const SortedCells::Entry> some, const Vec3& turn) {
+      for (const auto& [p, j] : some) consider(p + turn - foot, j);
     });
+    if (least == width * width) {
+      least = 1e300;
+      grid.visit_near(foot, [&](std::uint32_t j) { consider(wrapped_difference(foot, seeds[j], side), j); });
+    }
     columns[nearest].samples.push_back(k);
     const Vec3 position = seeds[nearest] + wrapped_difference(seeds[nearest], foot, side);
     columns[nearest].positions.push_back({position.x, position.y, samples[k].z});
