@@ -23,6 +23,7 @@ constexpr double kPlaceableShare = 0.7;      // Of a tile's volume; below that, 
 constexpr double kCellsInSmallestBlock = 2.0;  // Design decision 10.
 constexpr double kClosureSlope = 0.05;       // Blocks grow by this much a metre below the crack floor.
 constexpr int kCoverageProbes = 2000;
+constexpr double kProbePrecision = 0.01;       // Of a step of the search for the surface.
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -111,7 +112,8 @@ RockReport report_of(const RockMaterial& material, const MadeRock& rock) {
   return report;
 }
 
-/// Walks from the air side of the input surface inwards along its normal and asks who is met first.
+/// Walks along the input surface's normal, outwards from rock and inwards from air, to the surface of the result, and asks
+/// whose it is. Opposite walls of a gully are not mistaken for it.
 void measure(Amplified& result, const Field& rock, const Heightfield& heightfield, double reach, double slope, Seed seed) {
   const Vec2 lo(result.region.lo), hi(result.region.hi);
   const double threshold = std::cos(slope);
@@ -127,15 +129,21 @@ void measure(Amplified& result, const Field& rock, const Heightfield& heightfiel
     const Vec3 n = glm::normalize(result.terrain->gradient(p));
     if (n.z > threshold) continue;
     ++probes;
+    // The first rock inwards, or the last outwards.
+    const auto is_rock = [&](double t) { return result.field->value(p + t * n) < 0.0; };
     const double step = 0.02 * reach;
-    for (double t = reach; t > -2.0 * reach; t -= step) {
-      const Vec3 q = p + t * n;
-      if (result.field->value(q) >= 0.0) continue;
-      // Blocks are the surface where their value is the field's own.
-      if (rock.value(q) <= result.field->value(q)) ++on_blocks;
-      offset += t;
-      break;
+    double t = 0.0;
+    if (is_rock(t)) {
+      while (t < reach && is_rock(t + step)) t += step;
+    } else {
+      while (t > -2.0 * reach && !is_rock(t)) t -= step;
     }
+    for (double half = 0.5 * step; half > kProbePrecision * step; half *= 0.5)
+      if (is_rock(t + half)) t += half;
+    // Blocks are the surface where their value is the field's own.
+    const Vec3 q = p + t * n;
+    if (rock.value(q) <= result.field->value(q)) ++on_blocks;
+    offset += t;
   }
   if (probes == 0) return;
   result.rock_coverage = static_cast<double>(on_blocks) / probes;
