@@ -44,6 +44,10 @@ int main(int argc, char** argv) {
                  "X0 Y0 X1 Y1 in map coordinates where the heightmap has some, else metres from its south-west corner; "
                  "default: everything, or the steepest part of a large terrain");
   app.add_option("--resolution", run.resolution, "Edge of the mesh's cells, metres; default: a twelfth of a block");
+  app.add_option("--tolerance", run.tolerance,
+                 "Metres that triangles may lie off the surface where cells are wider than the resolution; 0: none is; "
+                 "default: a tenth of the resolution");
+  app.add_option("--triangles", run.triangles, "About as many triangles as are wanted, instead of a tolerance");
   app.add_flag("--solid", run.solid, "Close the sheet with walls and a floor");
   app.add_option("--seed", run.seed, "Same seed, same rock")->capture_default_str();
 

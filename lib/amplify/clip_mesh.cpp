@@ -13,7 +13,7 @@ namespace outcrop {
 namespace {
 
 constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
-constexpr double kOnSide = 1e-3;   // Of a cell: the surface keeps 0.02 away from the lattice's nodes.
+constexpr double kOnSide = 1e-7;   // Of the extent, a float's rounding: the surface keeps a fiftieth of a cell away from nodes.
 constexpr double kNearest = 0.02;  // Of an edge: cuts keep away from its ends, so that no sliver appears.
 
 std::vector<double> values_at_vertices(const TriangleMesh& mesh, const Field& field) {
@@ -82,40 +82,26 @@ class Clipper {
   TriangleMesh result_;
 };
 
-/// The sides of a region that a point lies on, a bit each.
-class Sides {
- public:
-  Sides(const Box& region, double resolution) : slack_(kOnSide * resolution) {
-    const Vec3 size = region.size();
-    // The region's far end is moved out to whole cells.
-    for (int axis = 0; axis < 3; ++axis) far_[axis] = resolution * std::ceil(size[axis] / resolution - kOnSide);
+/// The sides of a box from 0 to `extent` that a point lies on, a bit each.
+unsigned sides_of(const Vec3f& p, const Vec3& extent) {
+  unsigned sides = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double slack = kOnSide * extent[axis];
+    if (p[axis] < slack) sides |= 1u << (2 * axis);
+    if (p[axis] > extent[axis] - slack) sides |= 2u << (2 * axis);
   }
-
-  /// @param p  Relative to the region's lower corner.
-  [[nodiscard]] unsigned operator()(const Vec3f& p) const {
-    unsigned sides = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      if (p[axis] < slack_) sides |= 1u << (2 * axis);
-      if (p[axis] > far_[axis] - slack_) sides |= 2u << (2 * axis);
-    }
-    return sides;
-  }
-
- private:
-  double slack_;
-  Vec3 far_{0.0};
-};
+  return sides;
+}
 
 }  // namespace
 
-TriangleMesh without_walls(const TriangleMesh& mesh, const Box& region, double resolution) {
-  const Sides sides(region, resolution);
+TriangleMesh without_walls(const TriangleMesh& mesh, const Vec3& extent) {
   std::vector<std::uint32_t> kept(mesh.positions.size(), kUnused);
   TriangleMesh result;
   result.origin = mesh.origin;
   for (const auto& t : mesh.triangles) {
     const auto& p = mesh.positions;
-    if ((sides(p[t[0]]) & sides(p[t[1]]) & sides(p[t[2]])) != 0) continue;
+    if ((sides_of(p[t[0]], extent) & sides_of(p[t[1]], extent) & sides_of(p[t[2]], extent)) != 0) continue;
     result.triangles.push_back(t);
     for (const std::uint32_t v : t) kept[v] = 0;
   }

@@ -105,14 +105,14 @@ void write_mesh_report(JsonWriter& json, const AmplifyReport& report) {
   if (!report.polygonized && !report.mesh) return;
   json.begin_object("mesh");
   if (const auto& mesh = report.mesh) {
-    write_count(json, "vertices", mesh->vertices);
-    write_count(json, "triangles", mesh->triangles);
+    write_count(json, "vertices", mesh->vertices());
+    write_count(json, "triangles", mesh->triangles());
     json.boolean("closed", mesh->closed());
-    write_count(json, "parts", mesh->parts);
-    json.value("area", mesh->area);
-    if (mesh->closed()) json.value("volume", mesh->volume);
+    json.value("area", mesh->area());
+    if (mesh->closed()) json.value("volume", mesh->volume());
   }
   if (const auto& made = report.polygonized) {
+    json.value("resolution", made->resolution).value("tolerance", made->tolerance);
     write_count(json, "cells", made->cells);
     write_count(json, "evaluations", made->evaluations);
     write_count(json, "floating_parts_removed", made->parts_removed);

@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <span>
 #include <utility>
 
 #include "clip_mesh.h"
 #include "outcrop/amplify/report.h"
 #include "outcrop/core/file.h"
 #include "outcrop/core/parallel.h"
+#include "outcrop/mesh/mesh_measure.h"
 #include "outcrop/mesh/write_mesh.h"
 #include "outcrop/render/camera.h"
 #include "outputs.h"
@@ -21,7 +24,11 @@ constexpr double kFocusHeight = 0.8;          // Of the focus's width.
 constexpr double kCameraTurn = radians(25);   // Off the fall line: walls seen at an angle show their depth.
 constexpr double kCameraRise = 0.35;          // Height over distance of the default camera.
 constexpr int kFocusSamples = 192;            // Across the region, to find its steepest part.
+constexpr double kTolerance = 0.1;            // Of the resolution: below what shading shows.
 constexpr double kLeastBytesACell = 60.0;     // Two triangles and their share of vertices: below what meshing takes.
+constexpr double kMemoryShare = 0.5;          // Of the limit: larger meshes wait on disk while they are made.
+constexpr std::size_t kBytesAChunk = 4 << 20; // Of 64³ cells while it is meshed, twice what was measured on rock.
+constexpr double kMostTriangles = 8e9;        // Vertices are numbered by 32 bits.
 
 // What one core does, measured on the canyon of the demo; for --dry-run only.
 constexpr double kTrianglesASecond = 100e3;
@@ -157,6 +164,28 @@ std::string dry_run_text(const AmplifyRun& run, const AmplifyReport& report, con
   return text;
 }
 
+/// Writers of the triangle meshes of a run, and a measure that watches.
+class Writers {
+ public:
+  Writers(const std::vector<std::filesystem::path>& paths, const MeshMetadata& metadata, const Task& task) {
+    for (const auto& path : paths)
+      if (!is_vdb(path)) files_.push_back(mesh_writer(path, metadata, task));
+    for (const auto& file : files_) sinks_.push_back(file.get());
+    sinks_.push_back(&measure_);
+  }
+  Writers(const Writers&) = delete;
+  Writers& operator=(const Writers&) = delete;
+
+  [[nodiscard]] bool any() const { return !files_.empty(); }
+  [[nodiscard]] std::span<MeshSink* const> sinks() const { return sinks_; }
+  [[nodiscard]] const MeshMeasure& measure() const { return measure_; }
+
+ private:
+  MeshMeasure measure_;
+  std::vector<std::unique_ptr<MeshSink>> files_;
+  std::vector<MeshSink*> sinks_;
+};
+
 /// One run, stage by stage.
 class Runner {
  public:
@@ -243,16 +272,21 @@ class Runner {
       note("no ground here is steeper than " + number_text(degrees(report_.rock.placement.slope)) +
            " degrees, or blocks are below the resolution: the terrain stays as it is");
     if (run_.dry_run || !run_.meshes.empty()) expected_ = expectation();
-    if (!run_.dry_run) require_memory(static_cast<double>(expected_.mesh.bytes));
+    if (!run_.dry_run && !streams()) require_memory(static_cast<double>(expected_.mesh.bytes));
     speak();
     watch_.lap();
   }
 
   /// A flat sheet over the region needs this much at least: refuses the hopeless before blocks are placed for hours.
   void check_memory(const Window& window) const {
+    const PolygonizeOptions options = mesh_options();
     const Vec2 extent = window.hi - window.lo;
-    const double cells = extent.x * extent.y / (window.resolution * window.resolution);
-    if (!run_.meshes.empty()) require_memory(cells * kLeastBytesACell);
+    const double widest = options.tolerance > 0.0 ? std::exp2(options.levels) : 1.0;
+    const double cells = extent.x * extent.y / std::pow(widest * window.resolution, 2.0);
+    if (run_.meshes.empty() || options.triangles > 0) return;
+    const double fits = window.resolution * std::sqrt(2.0 * cells / kMostTriangles);
+    require(2.0 * cells <= kMostTriangles, "--resolution", "above " + number_text(fits, 3) + " m", window.resolution);
+    if (!streams()) require_memory(cells * kLeastBytesACell);
   }
 
   void require_memory(double bytes) const {
@@ -265,6 +299,8 @@ class Runner {
   [[nodiscard]] PolygonizeOptions mesh_options() const {
     return {.region = amplified().region,
             .resolution = report_.options.resolution,
+            .tolerance = run_.tolerance.value_or(kTolerance * report_.options.resolution),
+            .triangles = run_.triangles,
             .border = run_.solid ? Border::Closed : Border::Open,
             .parts = Parts::Grounded,
             .memory_limit = report_.memory_limit};
@@ -284,33 +320,48 @@ class Runner {
     return expected;
   }
 
+  [[nodiscard]] MeshMetadata metadata() const {
+    const Vec2 origin = report_.heightfield->lo();
+    return {comments(report_, origin), amplified().label_names, amplified().label_colours, Vec3(origin, 0.0)};
+  }
+
+  /// All but level sets and sheets cut at missing data can be written while it is made.
+  [[nodiscard]] bool streams() const { return !wants_level_set({run_.meshes, {}, {}}) && !is_cut(); }
+
   void mesh() {
-    const Vec3 origin(report_.heightfield->lo(), 0.0);
+    Writers writers(run_.meshes, metadata(), task_);
+    if (streams()) {
+      // What is meshed waits in memory for the verdict on floating parts while it fits there, else beside the first file.
+      const bool fits = static_cast<double>(expected_.mesh.bytes) < kMemoryShare * static_cast<double>(report_.memory_limit);
+      PieceOptions pieces{.spool = fits ? std::filesystem::path() : run_.meshes.front()};
+      pieces.chunks = std::clamp<std::size_t>(report_.memory_limit / kBytesAChunk, 1, pieces.chunks);
+      report_.polygonized = polygonize_pieces(*amplified().field, mesh_options(), pieces, writers.sinks(), task_);
+    } else {
+      whole_mesh(writers);
+    }
+    if (writers.any()) report_.mesh = writers.measure();
+    for (const auto& path : run_.meshes)
+      if (!is_vdb(path)) written(path, count_text(double(report_.mesh->triangles())) + " triangles");
+    report_.seconds.meshing = watch_.lap();
+  }
+
+  /// Makes and holds the mesh as a whole: to cut it, or to measure distances from it.
+  void whole_mesh(Writers& writers) {
     const bool level_set = wants_level_set({run_.meshes, {}, {}});
+    const Vec3 origin(report_.heightfield->lo(), 0.0);
     TriangleMesh solid;
-    if (wants_triangles({run_.meshes, {}, {}})) {
+    if (writers.any()) {
       PolygonizeOptions options = mesh_options();
       const bool shared = level_set && !is_cut();  // One mesh for both: a sheet is the solid without its walls.
       if (shared) options.border = Border::Closed;
       PolygonizeResult made = polygonize(is_cut() ? *amplified().ground : *amplified().field, options, task_);
-      if (shared) solid = rebased({made.mesh.origin, made.mesh.positions, {}, {}, made.mesh.triangles}, origin);
-      if (shared && !run_.solid) made.mesh = without_walls(made.mesh, options.region, options.resolution);
-      if (is_cut()) made.mesh = clip_mesh(made.mesh, *amplified().hole);
       report_.polygonized = made.statistics;
-      report_.seconds.meshing = watch_.lap();
-      const TriangleMesh mesh = rebased(std::move(made.mesh), origin);
-      const MeshMetadata metadata{comments(report_, report_.heightfield->lo()), amplified().label_names,
-                                  amplified().label_colours};
-      task_.begin("writing", run_.meshes.size());
-      for (const auto& path : run_.meshes) {
-        if (is_vdb(path)) continue;
-        write_mesh(path, mesh, metadata, task_);
-        written(path, count_text(double(mesh.triangles.size())) + " triangles");
-      }
-      if (!run_.report.empty()) report_.mesh = check_mesh(mesh);
+      if (shared) solid = rebased({made.mesh.origin, made.mesh.positions, {}, {}, made.mesh.triangles}, origin);
+      if (shared && !run_.solid) made.mesh = without_walls(made.mesh, made.statistics.extent);
+      if (is_cut()) made.mesh = clip_mesh(made.mesh, *amplified().hole);
+      for (MeshSink* const sink : writers.sinks()) feed(made.mesh, *sink);
     }
     if (level_set) level_sets(solid.triangles.empty() ? solid_mesh(origin) : solid);
-    report_.seconds.writing = watch_.lap();
   }
 
   /// That of --solid: nothing floats in it and no void hides. A level set holds it, whatever the meshes are.

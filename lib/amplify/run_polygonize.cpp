@@ -109,10 +109,11 @@ std::string run_polygonize(const PolygonizeRun& run, const Notify& notify, const
     const bool distance = wants_level_set({run.meshes, {}, {}}) && !run.keep_voids;
     PolygonizeOptions made = options;
     if (distance) made.border = Border::Closed;
-    TriangleMesh solid = polygonize(*scene.field, made, task).mesh;
+    PolygonizeResult result = polygonize(*scene.field, made, task);
+    TriangleMesh solid = std::move(result.mesh);
     accepted();
     const bool open = distance && options.border == Border::Open;
-    const TriangleMesh mesh = rebased(open ? without_walls(solid, options.region, options.resolution) : solid, Vec3(0.0));
+    const TriangleMesh mesh = rebased(open ? without_walls(solid, result.statistics.extent) : solid, Vec3(0.0));
     solid = rebased(std::move(solid), Vec3(0.0));
     if (mesh.triangles.empty() && notify)
       notify("cells of " + number_text(options.resolution) + " m find no surface in the region: the mesh is empty");

@@ -9,7 +9,6 @@
 #include <cstring>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -17,6 +16,7 @@
 #include "mesh_text.h"
 #include "outcrop/core/error.h"
 #include "outcrop/core/file.h"
+#include "outcrop/mesh/mesh_measure.h"
 #include "spool.h"
 
 namespace outcrop {
@@ -311,14 +311,7 @@ std::unique_ptr<MeshSink> mesh_writer(const std::filesystem::path& path, MeshMet
 
 void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh, const MeshMetadata& metadata,
                 const Task& task) {
-  const auto writer = mesh_writer(path, metadata, task);
-  std::vector<std::uint32_t> numbers(mesh.positions.size());
-  std::iota(numbers.begin(), numbers.end(), 0u);
-  const Label largest = mesh.labels.empty() ? Label{0} : *std::max_element(mesh.labels.begin(), mesh.labels.end());
-  writer->begin({mesh.origin, mesh.positions.size(), mesh.triangles.size(), !mesh.normals.empty(), !mesh.labels.empty(),
-                 largest});
-  writer->add({mesh.positions, mesh.normals, mesh.labels, numbers, 0, mesh.triangles});
-  writer->end();
+  feed(mesh, *mesh_writer(path, metadata, task));
 }
 
 }  // namespace outcrop

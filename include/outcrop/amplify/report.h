@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "outcrop/amplify/amplify.h"
-#include "outcrop/mesh/check_mesh.h"
+#include "outcrop/mesh/mesh_measure.h"
 #include "outcrop/mesh/polygonize.h"
 #include "outcrop/render/preview.h"
 
@@ -39,7 +39,7 @@ struct AmplifyReport {
   std::size_t memory_limit = 0;            ///< Bytes.
   Amplified amplified;
   std::optional<PolygonizeStatistics> polygonized;
-  std::optional<MeshCheck> mesh;
+  std::optional<MeshMeasure> mesh;
   std::optional<PreviewStatistics> preview;
   StageSeconds seconds;
   std::vector<std::filesystem::path> outputs;

@@ -50,6 +50,7 @@ struct PolygonizeStatistics {
   std::size_t evaluations = 0;    ///< Field values computed.
   std::size_t parts_removed = 0;  ///< Floating parts.
   std::size_t voids_removed = 0;
+  Vec3 extent{0.0};               ///< Of what was meshed, from region.lo on: the region moved out to whole cells, metres.
   double resolution = 0.0, tolerance = 0.0;  ///< As they were, or as the wanted number of triangles made them.
   std::array<std::size_t, kMaxLevels + 1> bricks{};  ///< Of 8³ cells that the surface crosses, by level; 0 is the finest.
 };
