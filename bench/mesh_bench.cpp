@@ -108,6 +108,7 @@ outcrop::Warp rough_warp() {
 const FieldPtr& tile(bool warp) {
   static const std::array<FieldPtr, 2> tiles = [] {
     std::array<FieldPtr, 2> made;
+    const outcrop::Warp relief = rough_warp();
     for (int with_warp = 0; with_warp < 2; ++with_warp) {
       std::vector<FieldPtr> blocks;
       for (int i = 0; i < 125; ++i) {
@@ -121,7 +122,7 @@ const FieldPtr& tile(bool warp) {
           planes.push_back({normal, -glm::dot(normal, centre) - rng.uniform(1.4, 1.9)});
         }
         blocks.push_back(std::make_shared<outcrop::RoundedPolytope>(planes, centre, 0.25,
-                                                                    with_warp ? rough_warp() : outcrop::Warp{}));
+                                                                    with_warp ? relief : outcrop::Warp{}));
       }
       made[with_warp] = outcrop::union_of(std::move(blocks));
     }

@@ -13,6 +13,9 @@ namespace {
 constexpr int kMostSubdivisions = 4;
 /// Below this share of the steepest slope that values along the lattice show, a cell's slope says nothing.
 constexpr double kLeastSlope = 0.1;
+/// With half the cells the error goes down to a half where there is a crease, to a quarter where the surface is smooth.
+/// Where it is this many tolerances, half the cells cannot do.
+constexpr double kCertain = 6.0;
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
 }  // namespace
@@ -90,10 +93,13 @@ void BrickError::reconstruct(const Lattice& lattice, const Brick& brick, const B
         steepest = std::max(steepest, std::abs(difference));
       }
     }
+    constexpr int kHalf = kBrickCells / 2;
+    const int octant = (node % 9 >= kHalf) + 2 * (node / 9 % 9 >= kHalf) + 4 * (node / 81 >= kHalf);
     const double length = std::max(glm::length(slope), kLeastSlope * steepest);
     for (const CellTriangle& t : CaseTable::cube()[cube_case]) {
       Face& face = faces_.emplace_back();
       face.slope = length;
+      face.octant = octant;
       for (int corner = 0; corner < 3; ++corner) {
         const CubeEdge e = cube_edge(t[corner]);
         face.vertex[corner] = vertex_of_edge_[e.axis * kNodes + node + e.from.x + 9 * e.from.y + 81 * e.from.z];
@@ -103,6 +109,7 @@ void BrickError::reconstruct(const Lattice& lattice, const Brick& brick, const B
 }
 
 double BrickError::deviation(const Lattice& lattice, const Field& field, int subdivisions) {
+  octants_.fill(0.0);
   if (faces_.empty()) return 0.0;
   // The middles of the small triangles that are not turned around.
   std::vector<Vec3> weights;
@@ -134,14 +141,13 @@ double BrickError::deviation(const Lattice& lattice, const Field& field, int sub
   evaluations_ += f_.size();
   for (std::size_t v = 0; v < skip; ++v) vertices_[v].value = f_[v];
   std::size_t i = skip;
-  double most = 0.0;
   for (const Face& face : faces_)
     for (const Vec3& w : weights) {
       const double linear = w.x * vertices_[face.vertex[0]].value + w.y * vertices_[face.vertex[1]].value +
                             w.z * vertices_[face.vertex[2]].value;
-      most = std::max(most, std::abs(f_[i++] - linear) / face.slope);
+      octants_[face.octant] = std::max(octants_[face.octant], std::abs(f_[i++] - linear) / face.slope);
     }
-  return most;
+  return *std::max_element(octants_.begin(), octants_.end());
 }
 
 double BrickError::measure(double enough, const Lattice& lattice, const Field& field, const Brick& brick,
@@ -151,7 +157,8 @@ double BrickError::measure(double enough, const Lattice& lattice, const Field& f
   if (error > enough) return error;
   error = std::max(error, hidden(enough, lattice, field, brick, values));
   if (error > enough) return error;
-  return std::max(error, deviation(lattice, field, std::min(1 << brick.level, kMostSubdivisions)));
+  const int subdivisions = std::min(1 << (brick.level - 1), kMostSubdivisions);
+  return subdivisions == 1 ? error : std::max(error, deviation(lattice, field, subdivisions));
 }
 
 namespace {
@@ -161,18 +168,26 @@ class Refiner {
   Refiner(const Lattice& lattice, double tolerance, const ForcedSplits& forced)
       : lattice_(lattice), tolerance_(tolerance), forced_(forced) {}
 
-  void descend(const Cell& cell, int level) {
+  void descend(const Cell& cell, int level, bool certain = false) {
     if (level == 0) {
       result_.leaves.push_back({cell.index, level});
       return;
     }
     const FieldPtr field = cell.field->narrow(lattice_.box(cell.index, level));
-    if (level <= lattice_.coarsest && !is_coarse(cell.index, level, *field)) {
-      result_.leaves.push_back({cell.index, level});
-      return;
+    unsigned certain_octants = 0;
+    if (level <= lattice_.coarsest && !certain) {
+      if (!is_coarse(cell.index, level, *field)) {
+        result_.leaves.push_back({cell.index, level});
+        return;
+      }
+      for (int octant = 0; octant < 8 && !forced_; ++octant)
+        if (error_.octants()[octant] > kCertain * tolerance_) certain_octants |= 1u << octant;
     }
     result_.narrowed.emplace_back(BrickPlace{cell.index, level}, field);
-    for (const Cell& child : children(lattice_, cell.index, level, field)) descend(child, level - 1);
+    for (const Cell& child : children(lattice_, cell.index, level, field)) {
+      const IVec3 at = child.index - 2 * cell.index;
+      descend(child, level - 1, !certain && (certain_octants >> (at.x + 2 * at.y + 4 * at.z) & 1) != 0);
+    }
   }
 
   Refinement take() {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <array>
 #include <functional>
 #include <utility>
 #include <vector>
@@ -20,8 +21,8 @@ class BrickError {
   /// brick's.
   double measure(double enough, const Lattice& lattice, const Field& field, const Brick& brick,
                  const BrickValues& values);
-  /// Of the brick measured last.
-  [[nodiscard]] std::size_t triangles() const noexcept { return faces_.size(); }
+  /// The same for the triangles of each octant of the brick measured last, sampled once a triangle.
+  [[nodiscard]] const std::array<double, 8>& octants() const noexcept { return octants_; }
   /// Field values computed since construction.
   [[nodiscard]] std::size_t evaluations() const noexcept { return evaluations_; }
 
@@ -33,6 +34,7 @@ class BrickError {
   struct Face {
     std::array<int, 3> vertex;
     double slope;  ///< |∇f| of the cell, from its corners.
+    int octant;    ///< Of the brick.
   };
   [[nodiscard]] double hidden(double enough, const Lattice& lattice, const Field& field, const Brick& brick,
                               const BrickValues& values);
@@ -43,6 +45,7 @@ class BrickError {
   std::vector<Vertex> vertices_;
   std::vector<Face> faces_;
   std::vector<double> x_, y_, z_, f_, slopes_;
+  std::array<double, 8> octants_{};
   std::array<int, 3 * kNodes> vertex_of_edge_{};
 };
 
@@ -56,7 +59,8 @@ struct Refinement {
 };
 
 /// The bricks of one octree cell at `level`: from the lattice's coarsest level downwards each is split while its error
-/// exceeds the tolerance, unless `forced` decides; not yet balanced. Cost: 9³ values, and about two more a triangle, for
+/// exceeds the tolerance, unless `forced` decides; not yet balanced. An octant that is off by so much that its error
+/// cannot but exceed the tolerance is split without a look. Cost: 9³ values, and about two more a triangle, for
 /// each brick above level 0.
 [[nodiscard]] Refinement refine(const Lattice& lattice, const Cell& cell, int level, double tolerance,
                                 const ForcedSplits& forced);

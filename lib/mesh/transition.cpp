@@ -1,7 +1,9 @@
 #include "transition.h"
 
 #include <algorithm>
+#include <iterator>
 #include <span>
+#include <utility>
 
 #include "outcrop/mesh/marching_cubes.h"
 
@@ -65,39 +67,72 @@ std::span<const PieceTriangle> piece_triangles(bool tetrahedron, unsigned rock) 
 TransitionCells::TransitionCells() : values_(kHalfNodes), known_(kHalfNodes, 0), coned_(kNodes, 0) {}
 
 template <class Visit>
-void TransitionCells::for_each_piece(const IVec3& cell, const FinerCells& finer, Visit&& visit) const {
+void TransitionCells::for_each_face(const IVec3& cell, const FinerCells& finer, Visit&& visit) {
   const IVec3 origin = 2 * cell;
-  const auto number = [&](const IVec3& half) { return half_number(origin + half); };
-  const int centre = number(IVec3(1));
   for (const CellFace& face : cell_faces()) {
-    const int middle = number(face.centre);
-    std::array<int, 4> corner, half;
+    FaceNodes nodes{.centre = half_number(origin + face.centre), .finer = finer.at(cell + face.direction)};
     for (int i = 0; i < 4; ++i) {
-      corner[i] = number(face.corners[i]);
-      half[i] = number(face.middles[i]);
+      nodes.corners[i] = half_number(origin + face.corners[i]);
+      nodes.middles[i] = half_number(origin + face.middles[i]);
+      nodes.divided[i] = nodes.finer || finer.at(cell + face.around[i][1]) || finer.at(cell + face.around[i][2]);
     }
-    if (finer.at(cell + face.direction)) {
-      for (int i = 0; i < 4; ++i)
-        visit(Piece{{corner[i], half[i], middle, half[(i + 3) % 4], centre}, false});
-      continue;
-    }
-    std::array<bool, 4> divided;
-    for (int i = 0; i < 4; ++i)
-      divided[i] = finer.at(cell + face.around[i][1]) || finer.at(cell + face.around[i][2]);
-    if (!divided[0] && !divided[1] && !divided[2] && !divided[3]) {
+    visit(nodes);
+  }
+}
+
+template <class Visit>
+void TransitionCells::for_each_piece(const IVec3& cell, const FinerCells& finer, Visit&& visit) const {
+  const int centre = half_number(2 * cell + 1);
+  for_each_face(cell, finer, [&](const FaceNodes& face) {
+    const auto& corner = face.corners;
+    const auto& half = face.middles;
+    if (face.finer) {
+      for (int i = 0; i < 4; ++i) visit(Piece{{corner[i], half[i], face.centre, half[(i + 3) % 4], centre}, false});
+    } else if (!face.fan()) {
       visit(Piece{{corner[0], corner[1], corner[2], corner[3], centre}, false});
-      continue;
-    }
-    for (int i = 0; i < 4; ++i) {
-      const int next = corner[(i + 1) % 4];
-      if (divided[i]) {
-        visit(Piece{{middle, corner[i], half[i], centre, 0}, true});
-        visit(Piece{{middle, half[i], next, centre, 0}, true});
-      } else {
-        visit(Piece{{middle, corner[i], next, centre, 0}, true});
+    } else {
+      const int middle = face.centre;
+      for (int i = 0; i < 4; ++i) {
+        const int next = corner[(i + 1) % 4];
+        if (face.divided[i]) {
+          visit(Piece{{middle, corner[i], half[i], centre, 0}, true});
+          visit(Piece{{middle, half[i], next, centre, 0}, true});
+        } else {
+          visit(Piece{{middle, corner[i], next, centre, 0}, true});
+        }
       }
     }
+  });
+}
+
+void TransitionCells::know_corner(int half, const BrickValues& values) {
+  const IVec3 at = half_place(half);
+  known_[half] = 1;
+  values_[half] = values.at(at.x / 2 + 9 * (at.y / 2) + 81 * (at.z / 2));
+}
+
+void TransitionCells::want(int half) {
+  if (known_[half]) return;
+  known_[half] = 1;
+  missing_.push_back(half);
+}
+
+void TransitionCells::count_rock(const FaceNodes& face, int& rock, int& nodes) const {
+  const auto count = [&](int half) {
+    rock += values_[half] < 0.0;
+    ++nodes;
+  };
+  for (int i = 0; i < 4; ++i) {
+    count(face.corners[i]);
+    if (face.divided[i]) count(face.middles[i]);
   }
+  if (known_[face.centre]) count(face.centre);
+}
+
+bool TransitionCells::mixed(const FaceNodes& face) const {
+  int rock = 0, nodes = 0;
+  count_rock(face, rock, nodes);
+  return rock > 0 && rock < nodes;
 }
 
 void TransitionCells::find_cells(const Lattice& lattice, const Field& field, const Brick& brick,
@@ -146,6 +181,7 @@ void TransitionCells::evaluate(const Lattice& lattice, const Field& field, const
   const Vec3 first(brick.first());
   const double half = 0.5 * (1 << brick.level);
   const std::size_t n = missing_.size();
+  if (n == 0) return;
   x_.resize(n);
   y_.resize(n);
   z_.resize(n);
@@ -159,40 +195,61 @@ void TransitionCells::evaluate(const Lattice& lattice, const Field& field, const
   field.values({x_, y_, z_}, f_, {});
   evaluations_ += n;
   for (std::size_t i = 0; i < n; ++i) values_[missing_[i]] = f_[i];
+  missing_.clear();
 }
 
 bool TransitionCells::sample(const Lattice& lattice, const Field& field, const Brick& brick, const BrickValues& values,
                              const FinerCells& finer) {
   evaluations_ = 0;
-  find_cells(lattice, field, brick, values, finer);
-  std::fill(known_.begin(), known_.end(), 0);
-  missing_.clear();
   pieces_.clear();
   mixed_.clear();
+  find_cells(lattice, field, brick, values, finer);
+  if (cells_.empty()) return false;
+  std::fill(known_.begin(), known_.end(), 0);
+
+  // Nodes that finer cells have, too.
   for (const IVec3& cell : cells_)
-    for_each_piece(cell, finer, [&](const Piece& piece) {
-      for (int i = 0; i < (piece.tetrahedron ? 4 : 5); ++i) {
-        const int half = piece.corners[i];
-        if (known_[half]) continue;
-        known_[half] = 1;
-        const IVec3 at = half_place(half);
-        if (((at.x | at.y | at.z) & 1) == 0)
-          values_[half] = values.at(at.x / 2 + 9 * (at.y / 2) + 81 * (at.z / 2));
-        else
-          missing_.push_back(half);
+    for_each_face(cell, finer, [&](const FaceNodes& face) {
+      for (int i = 0; i < 4; ++i) {
+        know_corner(face.corners[i], values);
+        if (face.divided[i]) want(face.middles[i]);
       }
+      if (face.finer) want(face.centre);
     });
   evaluate(lattice, field, brick);
-  for (const IVec3& cell : cells_) {
-    const std::size_t before = pieces_.size();
+  // Middles of other faces, and of cells: whether they are rock counts where the nodes around them differ; elsewhere they
+  // are what those are, even if a look would show something else. Both cells at a face see the same.
+  for (const IVec3& cell : cells_)
+    for_each_face(cell, finer, [&](const FaceNodes& face) {
+      if (face.fan() && mixed(face)) want(face.centre);
+    });
+  evaluate(lattice, field, brick);
+  const auto is_mixed = [&](const IVec3& cell) {
+    int rock = 0, nodes = 0;
+    for_each_face(cell, finer, [&](const FaceNodes& face) { count_rock(face, rock, nodes); });
+    return rock > 0 && rock < nodes;
+  };
+  std::copy_if(cells_.begin(), cells_.end(), std::back_inserter(mixed_), is_mixed);
+  std::vector<std::pair<int, int>> unmixed;  // Middles of faces, each with a corner.
+  for (const IVec3& cell : mixed_) {
+    want(half_number(2 * cell + 1));
+    for_each_face(cell, finer, [&](const FaceNodes& face) {
+      if (!face.fan() || known_[face.centre]) return;
+      want(face.centre);
+      unmixed.emplace_back(face.centre, face.corners[0]);
+    });
+  }
+  evaluate(lattice, field, brick);
+  for (const auto& [centre, corner] : unmixed)
+    if ((values_[centre] < 0.0) != (values_[corner] < 0.0)) values_[centre] = values_[corner];
+
+  for (const IVec3& cell : mixed_)
     for_each_piece(cell, finer, [&](const Piece& piece) {
       const int corners = piece.tetrahedron ? 4 : 5;
       int rock = 0;
       for (int i = 0; i < corners; ++i) rock += values_[piece.corners[i]] < 0.0;
       if (rock > 0 && rock < corners) pieces_.push_back(piece);
     });
-    if (pieces_.size() > before) mixed_.push_back(cell);
-  }
   return !pieces_.empty();
 }
 

@@ -29,7 +29,8 @@ using HalfEdge = std::array<int, 2>;
 /// Such a cell is the union of cones from its centre over its faces. A face shared with finer cells is four squares, and
 /// carries four pyramids; a face with a divided edge is a fan of triangles around its middle, and carries tetrahedra;
 /// any other face is one square and carries one pyramid. Both cells that share a face cut it alike, so what they draw on
-/// it is the same; each piece is convex, so what is in different pieces does not meet.
+/// it is the same; each piece is convex, so what is in different pieces does not meet. Where the nodes around
+/// a middle agree, it counts as one of them.
 class TransitionCells {
  public:
   TransitionCells();
@@ -59,6 +60,22 @@ class TransitionCells {
   void find_cells(const Lattice& lattice, const Field& field, const Brick& brick, const BrickValues& values,
                   const FinerCells& finer);
   void evaluate(const Lattice& lattice, const Field& field, const Brick& brick);
+  /// A face of a coned cell: half nodes counter-clockwise from outside, and the middles between each and the next.
+  struct FaceNodes {
+    std::array<int, 4> corners, middles;
+    std::array<bool, 4> divided;
+    int centre;
+    bool finer;  ///< Shared with finer cells.
+    [[nodiscard]] bool fan() const noexcept {
+      return !finer && (divided[0] || divided[1] || divided[2] || divided[3]);
+    }
+  };
+  template <class Visit>
+  static void for_each_face(const IVec3& cell, const FinerCells& finer, Visit&& visit);
+  void know_corner(int half, const BrickValues& values);
+  void want(int half);
+  void count_rock(const FaceNodes& face, int& rock, int& nodes) const;
+  [[nodiscard]] bool mixed(const FaceNodes& face) const;
   template <class Visit>
   void for_each_piece(const IVec3& cell, const FinerCells& finer, Visit&& visit) const;
   template <class Emit>
