@@ -85,24 +85,32 @@ Chunk ChunkBuilder::build(const Cell& cell, int level) {
 
 void ChunkBuilder::descend(const Cell& cell, int level) {
   if (!tree_) {
-    if (level == 0) return visit(cell, level);
+    if (level == 0) return visit(cell, level, nullptr);
     for (const Cell& child : split(lattice_, cell, level)) descend(child, level - 1);
-  } else if (tree_->is_split({cell.index, level})) {
-    const FieldPtr* known = narrowed_->find(BrickTree::key({cell.index, level}));
-    const FieldPtr field = known ? *known : cell.field->narrow(lattice_.box(cell.index, level));
+    return;
+  }
+  const BrickPlace place{cell.index, level};
+  const KnownCell* known = known_->find(BrickTree::key(place));
+  if (tree_->is_split(place)) {
+    const FieldPtr field = known ? known->field : cell.field->narrow(lattice_.box(cell.index, level));
     for (int octant = 0; octant < 8; ++octant) descend({child_index(cell.index, octant), field}, level - 1);
-  } else if (tree_->is_leaf({cell.index, level})) {
+  } else if (tree_->is_leaf(place)) {
     // What balance made is not known to hold surface.
-    if (may_hold_surface(*cell.field, lattice_.box(cell.index, level))) visit(cell, level);
+    if (known || may_hold_surface(*cell.field, lattice_.box(cell.index, level))) visit(cell, level, known);
   }
 }
 
-void ChunkBuilder::visit(const Cell& cell, int level) {
+void ChunkBuilder::visit(const Cell& cell, int level, const KnownCell* known) {
   task_.check();
-  const FieldPtr field = cell.field->narrow(lattice_.box(cell.index, level));
+  const FieldPtr field = known ? known->field : cell.field->narrow(lattice_.box(cell.index, level));
   Brick brick(lattice_, cell.index, level);
-  chunk_.evaluations += BrickValues::count(brick);
-  bool mixed = values_.sample(lattice_, *field, brick), transition = false;
+  bool mixed = false, transition = false;
+  if (known && !known->values.empty()) {
+    mixed = values_.use(known->values, brick);
+  } else {
+    mixed = values_.sample(lattice_, *field, brick);
+    chunk_.evaluations += BrickValues::count(brick);
+  }
   if (tree_ && level > 0) {
     const FinerCells finer = tree_->finer_around({cell.index, level});
     transition = finer.any();

@@ -9,6 +9,7 @@
 #include "flat_map.h"
 #include "lattice.h"
 #include "outcrop/core/task.h"
+#include "refine.h"
 #include "roots.h"
 #include "transition.h"
 
@@ -43,14 +44,14 @@ struct Chunk {
 /// Meshes the bricks of a tree's cell at `level`, narrowing on the way down.
 class ChunkBuilder {
  public:
-  /// Fields narrowed to cells of the tree, by BrickTree::key; need not be complete.
-  using Narrowed = FlatMap<FieldPtr>;
+  /// By BrickTree::key; need not be complete.
+  using KnownCells = FlatMap<KnownCell>;
   ChunkBuilder(const Lattice& lattice, const PolygonizeOptions& options, const Task& task)
       : lattice_(lattice), options_(options), task_(task) {}
   /// Bricks of other sizes than the finest; without them cells are uniform.
-  void use(const BrickTree& tree, const Narrowed& narrowed) {
+  void use(const BrickTree& tree, const KnownCells& known) {
     tree_ = &tree;
-    narrowed_ = &narrowed;
+    known_ = &known;
   }
   /// @throws ParameterError when two bricks disagree about an edge; Cancelled.
   [[nodiscard]] Chunk build(const Cell& cell, int level);
@@ -61,7 +62,7 @@ class ChunkBuilder {
     std::uint8_t quarters = 0;
   };
   void descend(const Cell& cell, int level);
-  void visit(const Cell& cell, int level);
+  void visit(const Cell& cell, int level, const KnownCell* known);
   void mesh(const Brick& brick, const Field& field, bool transition);
   void find_vertices(const Brick& brick, bool transition);
   void emit_cells(const Brick& brick, bool transition);
@@ -77,7 +78,7 @@ class ChunkBuilder {
   const PolygonizeOptions& options_;
   const Task& task_;
   const BrickTree* tree_ = nullptr;
-  const Narrowed* narrowed_ = nullptr;
+  const KnownCells* known_ = nullptr;
   Chunk chunk_;
   BrickValues values_;
   TransitionCells transition_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace outcrop::meshing {
@@ -41,7 +42,7 @@ class FlatMap {
       i = (i + 1) & mask();
       if (slots_[i].key == 0) break;
       if (((i - home(slots_[i].key)) & mask()) < ((i - hole) & mask())) continue;
-      slots_[hole] = slots_[i];
+      slots_[hole] = std::move(slots_[i]);
       hole = i;
     }
     slots_[hole] = {};
@@ -72,8 +73,8 @@ class FlatMap {
   void grow() {
     std::vector<Slot> old(slots_.empty() ? 64 : 2 * slots_.size());
     old.swap(slots_);
-    for (const Slot& slot : old)
-      if (slot.key != 0) slots_[place(slot.key)] = slot;
+    for (Slot& slot : old)
+      if (slot.key != 0) slots_[place(slot.key)] = std::move(slot);
   }
 
   std::vector<Slot> slots_;

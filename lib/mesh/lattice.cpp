@@ -120,21 +120,31 @@ bool BrickValues::sample(const Lattice& lattice, const Field& field, Brick& bric
   field.values({std::span(x_).first(n), std::span(y_).first(n), std::span(z_).first(n)}, values, {});
 
   // Spread the rows of a brick cut short to their places, last row first so that none is overwritten unread.
-  unsigned any = 0, all = ~0u;
-  for (int k = brick.cells.z; k >= 0; --k) {
+  for (int k = brick.cells.z; k >= 0 && n < kNodes; --k)
     for (int j = brick.cells.y; j >= 0; --j) {
       const double* from = &values_[(k * (brick.cells.y + 1) + j) * width];
-      double* to = &values_[(k * 9 + j) * 9];
+      std::copy_backward(from, from + width, &values_[(k * 9 + j) * 9] + width);
+    }
+  return classify(brick);
+}
+
+bool BrickValues::use(const std::vector<double>& values, Brick& brick) {
+  values_ = values;
+  return classify(brick);
+}
+
+bool BrickValues::classify(Brick& brick) const {
+  const int width = brick.cells.x + 1;
+  unsigned any = 0, all = ~0u;
+  for (int k = 0; k <= brick.cells.z; ++k)
+    for (int j = 0; j <= brick.cells.y; ++j) {
+      const double* row = &values_[(k * 9 + j) * 9];
       unsigned bits = 0;
-      for (int i = width - 1; i >= 0; --i) {
-        to[i] = from[i];
-        bits = bits << 1 | (to[i] < 0.0 ? 1u : 0u);
-      }
+      for (int i = 0; i < width; ++i) bits |= (row[i] < 0.0 ? 1u : 0u) << i;
       brick.rock[k * 9 + j] = static_cast<std::uint16_t>(bits);
       any |= bits;
       all &= bits;
     }
-  }
   return any != 0 && all != (1u << width) - 1;
 }
 

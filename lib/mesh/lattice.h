@@ -134,6 +134,9 @@ class BrickValues {
   BrickValues();
   /// @return true when the brick holds rock and air.
   bool sample(const Lattice& lattice, const Field& field, Brick& brick);
+  /// The same with values that another took from the same brick.
+  bool use(const std::vector<double>& values, Brick& brick);
+  [[nodiscard]] const std::vector<double>& all() const noexcept { return values_; }
   /// At node i + 9 j + 81 k.
   [[nodiscard]] double at(int node) const noexcept { return values_[node]; }
   [[nodiscard]] static std::size_t count(const Brick& brick) noexcept {
@@ -141,6 +144,8 @@ class BrickValues {
   }
 
  private:
+  bool classify(Brick& brick) const;
+
   std::vector<double> x_, y_, z_, values_;
 };
 

@@ -57,11 +57,11 @@ class Forest {
     tree.balance(lattice_);
     return tree;
   }
-  /// Fields that refinement narrowed in a chunk; handed over.
-  [[nodiscard]] ChunkBuilder::Narrowed take_narrowed(std::size_t chunk) {
-    ChunkBuilder::Narrowed map;
-    for (auto& [place, field] : trees_[chunk].narrowed) map[BrickTree::key(place)] = std::move(field);
-    trees_[chunk].narrowed = {};
+  /// What refinement knows about cells of a chunk; handed over.
+  [[nodiscard]] ChunkBuilder::KnownCells take_known(std::size_t chunk) {
+    ChunkBuilder::KnownCells map;
+    for (auto& [place, known] : trees_[chunk].known) map[BrickTree::key(place)] = std::move(known);
+    trees_[chunk].known = {};
     return map;
   }
   void release(std::size_t first, std::size_t last) {
@@ -132,11 +132,11 @@ Assembly mesh_region(const Field& field, const Lattice& lattice, const Polygoniz
         [&](std::size_t i) {
           ChunkBuilder builder(lattice, options, task);
           BrickTree tree;
-          ChunkBuilder::Narrowed narrowed;
+          ChunkBuilder::KnownCells known;
           if (!uniform) {
             tree = forest.balanced(first + i);
-            narrowed = forest.take_narrowed(first + i);
-            builder.use(tree, narrowed);
+            known = forest.take_known(first + i);
+            builder.use(tree, known);
           }
           Chunk chunk = builder.build(cells[first + i], level);
           if (uniform) cells[first + i].field.reset();

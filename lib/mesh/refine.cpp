@@ -178,12 +178,15 @@ class Refiner {
     if (level <= lattice_.coarsest && !certain) {
       if (!is_coarse(cell.index, level, *field)) {
         result_.leaves.push_back({cell.index, level});
+        KnownCell known{field, {}};
+        if (!forced_) known.values = values_.all();
+        result_.known.emplace_back(BrickPlace{cell.index, level}, std::move(known));
         return;
       }
       for (int octant = 0; octant < 8 && !forced_; ++octant)
         if (error_.octants()[octant] > kCertain * tolerance_) certain_octants |= 1u << octant;
     }
-    result_.narrowed.emplace_back(BrickPlace{cell.index, level}, field);
+    result_.known.emplace_back(BrickPlace{cell.index, level}, KnownCell{field, {}});
     for (const Cell& child : children(lattice_, cell.index, level, field)) {
       const IVec3 at = child.index - 2 * cell.index;
       descend(child, level - 1, !certain && (certain_octants >> (at.x + 2 * at.y + 4 * at.z) & 1) != 0);

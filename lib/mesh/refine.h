@@ -52,9 +52,15 @@ class BrickError {
 /// True where a brick is to be split, whatever the field; for tests.
 using ForcedSplits = std::function<bool(const BrickPlace&)>;
 
+/// What refinement computed in a cell, so that nobody does it again.
+struct KnownCell {
+  FieldPtr field;              ///< Narrowed to it.
+  std::vector<double> values;  ///< BrickValues::all() of a leaf; empty: not known.
+};
+
 struct Refinement {
   std::vector<BrickPlace> leaves;  ///< In Morton order.
-  std::vector<std::pair<BrickPlace, FieldPtr>> narrowed;  ///< The cells that were split, with their fields.
+  std::vector<std::pair<BrickPlace, KnownCell>> known;
   std::size_t evaluations = 0;
 };
 
