@@ -43,6 +43,8 @@ class Forest {
         [&](std::size_t i) {
           Refinement refinement = refine(lattice_, cells_[missing[i]], level_, tolerance_, forced_);
           const std::size_t made = refinement.evaluations;
+          // What is not meshed now waits as a list of bricks alone.
+          if (missing[i] < first || missing[i] >= last) refinement.known = {};
           trees_[missing[i]] = std::move(refinement);
           return made;
         },
@@ -124,8 +126,9 @@ Assembly mesh_region(const Field& field, const Lattice& lattice, const Polygoniz
   Assembly assembly(lattice, options, pieces.spool.empty() ? memory_store() : disk_store(pieces.spool));
   Forest forest(lattice, cells, level, options.tolerance, forced);
   task.begin("meshing", cells.size());
-  for (std::size_t first = 0; first < cells.size(); first += pieces.chunks) {
-    const std::size_t last = std::min(first + pieces.chunks, cells.size());
+  const std::size_t at_a_time = std::max<std::size_t>(1, pieces.squares >> 2 * std::max(0, level - kChunkLevel));
+  for (std::size_t first = 0; first < cells.size(); first += at_a_time) {
+    const std::size_t last = std::min(first + at_a_time, cells.size());
     if (!uniform) assembly.count_evaluations(forest.prepare(first, last, task));
     auto made = parallel_map(
         last - first,

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <optional>
 
 #include "budget.h"
@@ -60,15 +59,14 @@ PolygonizeResult polygonize(const Field& field, const PolygonizeOptions& options
   meshing::MeshCollector collector;
   MeshSink* const sinks[] = {&collector};
   PolygonizeResult result;
-  const PieceOptions one_piece{.chunks = std::numeric_limits<std::size_t>::max() / 2};
-  result.statistics = polygonize_pieces(field, options, one_piece, sinks, task);
+  result.statistics = polygonize_pieces(field, options, {}, sinks, task);
   result.mesh = collector.take();
   return result;
 }
 
 PolygonizeStatistics polygonize_pieces(const Field& field, const PolygonizeOptions& options, const PieceOptions& pieces,
                                        std::span<MeshSink* const> sinks, const Task& task) {
-  require(pieces.chunks >= 1, "chunks", "at least 1", static_cast<double>(pieces.chunks));
+  require(pieces.squares >= 1, "squares", "at least 1", static_cast<double>(pieces.squares));
   if (options.memory_limit > 0 && pieces.spool.empty()) require_memory(estimate(field, options, task), options);
   std::optional<TriangleBudget> budget;
   if (options.triangles > 0) budget.emplace(field, options, task);

@@ -107,7 +107,9 @@ TEST(AdaptiveMesh, IsSolidAndFreeOfIntersectionsOnWhiteNoiseAtRandomLevels) {
 TEST(AdaptiveMesh, IsTheUniformMeshWhereEverythingIsSplit) {
   const FieldPtr field = waves(3, 1.1, -0.05);
   PolygonizeOptions uniform = cube(1.6, 0.05, 0.0);
-  const MeshCheck all = check_mesh(polygonize(*field, uniform).mesh);
+  const TriangleMesh mesh = polygonize(*field, uniform).mesh;
+  EXPECT_EQ(test::self_intersections(mesh), 0u);
+  const MeshCheck all = check_mesh(mesh);
   const MeshCheck split = check_mesh(mesh_with(*field, cube(1.6, 0.05, 1.0), [](const BrickPlace&) { return true; }).mesh);
   EXPECT_EQ(all.triangles, split.triangles);
   EXPECT_DOUBLE_EQ(all.volume, split.volume);
@@ -234,19 +236,65 @@ TEST(AdaptiveMesh, RemovesWhatFloatsAndVoids) {
   }
 }
 
-TEST(AdaptiveMesh, FindsThinFeaturesThatCoarseNodesMiss) {
-  // A slab 1.1 finest cells thick, far thinner than the coarsest cells that would hide it.
+TEST(AdaptiveMesh, IsSolidWhereverPlanesRunThroughNodes) {
+  // Through corners, edges and faces of cells of several sizes, and of the region; a spot forces all levels.
+  const Vec3 spot(0.31, -0.22, 0.0);
+  for (const Vec3& normal : {Vec3(0, 0, 1), Vec3(0, 1, 1), Vec3(1, 1, 1), Vec3(-1, 2, 3), Vec3(1, 0, -1)})
+    for (const double distance : {0.0, 1e-9, 0.4, 0.37}) {
+      const Vec3 n = glm::normalize(normal);
+      const FieldPtr field = formula([=](const Vec3& p) {
+        const double plane = glm::dot(n, p) - distance;
+        return std::min(plane, glm::length(p - (spot + (distance - glm::dot(n, spot)) * n)) - 0.11);
+      });
+      const Meshed made = mesh_with(*field, cube(1.6, 0.025, 0.004), {});
+      EXPECT_GE(levels_used(made.statistics), 3);
+      expect_solid(made.mesh, "plane");
+      EXPECT_EQ(check_mesh(made.mesh).euler, 2);
+      EXPECT_EQ(test::self_intersections(made.mesh), 0u);
+    }
+}
+
+/// A plate or a crack across the middle of a region, `thickness` finest cells wide, `tilt` off the lattice.
+MeshCheck plate_or_crack(bool plate, double thickness, double shift, double tilt) {
   const double resolution = 0.05;
-  const Vec3 normal = glm::normalize(Vec3(0.1, 0.2, 1.0));
-  for (const double shift : {0.0, 0.013, 0.4}) {
-    const FieldPtr plate =
-        formula([=](const Vec3& p) { return std::abs(glm::dot(p, normal) - shift) - 0.55 * resolution * 1.2; });
-    const TriangleMesh mesh = polygonize(*plate, cube(3.2, resolution, 0.02)).mesh;
-    expect_solid(mesh, "plate");
-    EXPECT_EQ(check_mesh(mesh).parts, 1u) << shift;
-    EXPECT_NEAR(check_mesh(mesh).volume, 6.4 * 6.4 / normal.z * 1.1 * 1.2 * resolution, 0.05 * 6.4 * 6.4 * resolution)
-        << shift;
+  const Vec3 normal = glm::normalize(Vec3(0.3 * tilt, 0.2 * tilt, 1.0));
+  const FieldPtr field = formula([=](const Vec3& p) {
+    const double off = std::abs(glm::dot(p, normal) - shift * resolution) - 0.5 * thickness * resolution;
+    return plate ? off : -off;
+  });
+  const TriangleMesh mesh = polygonize(*field, cube(1.6, resolution, 0.02)).mesh;
+  if (!mesh.triangles.empty()) expect_solid(mesh, "plate or crack");
+  return check_mesh(mesh);
+}
+
+TEST(AdaptiveMesh, ShowsPlatesAndCracksThatNodesFallInto) {
+  // Thicker than a finest cell along the lattice: whole, wherever they lie and however coarse the cells around them.
+  for (const double shift : {0.0, 0.3, 0.5, 7.9}) {
+    const MeshCheck plate = plate_or_crack(true, 1.1, shift, 0.0), crack = plate_or_crack(false, 1.1, shift, 0.0);
+    EXPECT_EQ(plate.parts, 1u) << shift;
+    EXPECT_NEAR(plate.volume, 3.2 * 3.2 * 1.1 * 0.05, 0.05 * 3.2 * 3.2 * 0.05) << shift;
+    EXPECT_EQ(crack.parts, 2u) << shift;
   }
+  // Thinner ones are whole where a layer of nodes lies in them, and else are not there: no tatters.
+  for (const double thickness : {0.9, 0.5})
+    for (const double shift : {0.0, 0.3, 0.5}) {
+      const bool holds_nodes = shift < 0.5 * thickness;
+      EXPECT_EQ(plate_or_crack(true, thickness, shift, 0.0).parts, holds_nodes ? 1u : 0u) << thickness << " " << shift;
+      EXPECT_EQ(plate_or_crack(false, thickness, shift, 0.0).parts, holds_nodes ? 2u : 1u) << thickness << " " << shift;
+    }
+  // Across the lattice they show as stripes and holes: solid all the same.
+  for (const double thickness : {1.1, 0.9, 0.5}) {
+    EXPECT_GT(plate_or_crack(true, thickness, 0.3, 1.0).parts, 0u);
+    EXPECT_GT(plate_or_crack(false, thickness, 0.3, 1.0).parts, 0u);
+  }
+}
+
+TEST(AdaptiveMesh, ReportsItsSmallestAngle) {
+  // Vertices keep off the ends of their edges, so that no angle is 0; marching cubes promise no more.
+  PolygonizeOptions options{.region = {{-4, -4, -1}, {4, 4, 1}}, .resolution = 0.02, .tolerance = 0.005};
+  const double angle = test::smallest_angle(polygonize(*rough_spot(), options).mesh);
+  RecordProperty("smallest_angle_deg", std::to_string(angle));
+  EXPECT_GT(angle, 0.3);
 }
 
 TEST(AdaptiveMesh, HasAboutAsManyTrianglesAsAskedFor) {

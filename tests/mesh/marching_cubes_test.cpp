@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 #include <utility>
+#include <vector>
 
 #include "outcrop/core/rng.h"
 
@@ -135,6 +136,42 @@ TEST(MarchingCubes, NeverIntersectThemselvesWhereverTheEdgesAreCut) {
             ASSERT_FALSE(crosses(cut[p], cut[q], solid)) << "case " << c << " sample " << sample;
           }
         }
+    }
+  }
+}
+
+TEST(MarchingCubes, CutPyramidsAndTetrahedraByTheSameRules) {
+  for (const auto& [shape, table] : {std::pair(CellShape::pyramid(), &CaseTable::pyramid()),
+                                     std::pair(CellShape::tetrahedron(), &CaseTable::tetrahedron())}) {
+    for (int c = 0; c < 1 << shape.corners.size(); ++c) {
+      const auto triangles = (*table)[c];
+      std::set<std::pair<int, int>> sides;
+      std::set<int> used;
+      for (const CellTriangle& t : triangles)
+        for (int i = 0; i < 3; ++i) {
+          used.insert(t[i]);
+          EXPECT_TRUE(sides.emplace(t[i], t[(i + 1) % 3]).second) << "case " << c;
+        }
+      const auto rock = [&](int corner) { return (c >> corner & 1) != 0; };
+      for (int e = 0; e < static_cast<int>(shape.edges.size()); ++e)
+        EXPECT_EQ(used.contains(e), rock(shape.edges[e][0]) != rock(shape.edges[e][1])) << "case " << c;
+      for (const auto& [a, b] : sides)
+        EXPECT_EQ(shape.share_face(a, b), !sides.contains({b, a})) << "case " << c;
+      for (std::uint64_t sample = 0; sample < 300; ++sample) {
+        std::vector<Vec3> cut;
+        for (std::size_t e = 0; e < shape.edges.size(); ++e) {
+          Rng rng(8, "piece", (sample * 32 + static_cast<std::uint64_t>(c)) * 16 + e);
+          cut.push_back(glm::mix(shape.corners[shape.edges[e][0]], shape.corners[shape.edges[e][1]],
+                                 rng.uniform(0.02, 0.98)));
+        }
+        for (const CellTriangle& a : triangles)
+          for (const CellTriangle& b : triangles)
+            for (int i = 0; i < 3 && a != b; ++i) {
+              const int p = a[i], q = a[(i + 1) % 3];
+              if (std::find(b.begin(), b.end(), p) != b.end() || std::find(b.begin(), b.end(), q) != b.end()) continue;
+              ASSERT_FALSE(crosses(cut[p], cut[q], {cut[b[0]], cut[b[1]], cut[b[2]]})) << "case " << c;
+            }
+      }
     }
   }
 }

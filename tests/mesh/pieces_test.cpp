@@ -47,19 +47,19 @@ TEST(MeshPieces, JoinToTheSameBytesHoweverManyTheyAre) {
       for (const std::string extension : {".ply", ".obj", ".stl"}) {
         write_mesh(folder / ("whole" + extension), whole.mesh, metadata);
       }
-      for (const std::size_t chunks : {1, 7}) {
-        const ThreadLimit threads(chunks == 7 ? 2 : 1);
+      for (const std::size_t squares : {1, 7}) {
+        const ThreadLimit threads(squares == 7 ? 2 : 1);
         std::array<std::unique_ptr<MeshSink>, 3> writers = {mesh_writer(folder / "pieces.ply", metadata),
                                                             mesh_writer(folder / "pieces.obj", metadata),
                                                             mesh_writer(folder / "pieces.stl", metadata)};
         MeshSink* const sinks[] = {writers[0].get(), writers[1].get(), writers[2].get()};
         const PolygonizeStatistics statistics = polygonize_pieces(
-            *field, options(tolerance, border), {.chunks = chunks, .spool = folder / "pieces.ply"}, sinks);
+            *field, options(tolerance, border), {.squares = squares, .spool = folder / "pieces.ply"}, sinks);
         EXPECT_EQ(statistics.parts_removed, whole.statistics.parts_removed);
         EXPECT_EQ(statistics.voids_removed, whole.statistics.voids_removed);
         for (const std::string extension : {".ply", ".obj", ".stl"})
           EXPECT_TRUE(read_text(folder / ("pieces" + extension)) == read_text(folder / ("whole" + extension)))
-              << extension << " in pieces of " << chunks << " chunks, tolerance " << tolerance;
+              << extension << " in pieces of " << squares << " squares, tolerance " << tolerance;
       }
     }
   EXPECT_EQ(folder.entries(), 6u);
@@ -96,7 +96,7 @@ TEST(MeshPieces, LeaveNoFileBehindWhenStopped) {
     const auto writer = mesh_writer(folder / "mesh.ply", {}, task);
     MeshSink* const sinks[] = {writer.get(), &stopper};
     EXPECT_THROW((void)polygonize_pieces(*scene(), options(0.0, Border::Open),
-                                         {.chunks = 2, .spool = folder / "mesh.ply"}, sinks, task),
+                                         {.squares = 2, .spool = folder / "mesh.ply"}, sinks, task),
                  Cancelled);
   }
   EXPECT_EQ(folder.entries(), 0u);

@@ -33,7 +33,7 @@ struct PolygonizeOptions {
   Box region;
   double resolution = 0.25;  ///< Edge of the finest cells in metres, > 0.
   double tolerance = 0.0;    ///< Metres, ≥ 0: how far triangles may lie off the surface where cells are not finest; 0: all are.
-  int levels = 5;            ///< Cells are up to 2^levels times as long as the finest, 0 to 8; with a tolerance.
+  int levels = 4;            ///< Cells are up to 2^levels times as long as the finest, 0 to 8; with a tolerance.
   std::size_t triangles = 0;  ///< About how many are wanted; 0: as many as it takes. Decides the tolerance, and the
                               ///< resolution where all finest cells would not do.
   Border border = Border::Open;
@@ -66,7 +66,7 @@ struct PolygonizeResult {
 /// Marching cubes on one integer lattice with searched tables, over bricks of 8³ cells that `bound` cannot exclude and
 /// in which the field is narrowed. With a tolerance the bricks form an octree, whose neighbours differ by one level at
 /// most; cells beside finer ones are coned from their centres, so there is no crack, skirt or T-junction. Where bricks
-/// are split depends on the field and the lattice alone: docs/decisions/mesher.md. Features thinner than a cell show
+/// are split depends on the field and the lattice alone. Features thinner than a cell show
 /// where a node of the lattice falls into them. Vertices lie on the surface to within a thousandth of their cell where f
 /// is smooth, and to within a fiftieth where it passes that close to a node of the lattice, so that no triangle
 /// degenerates. The mesh's origin is region.lo. The same bytes for any number of threads. Cost: O(cells crossed)
@@ -102,15 +102,15 @@ class MeshSink {
 };
 
 struct PieceOptions {
-  /// Octree cells of 64³ finest cells, or of twice the coarsest brick, that are meshed at a time; at least 1. Decides
-  /// memory and load balance, not the mesh.
-  std::size_t chunks = 256;
+  /// Squares of 64 finest cells along the surface, about ten thousand triangles where cells are finest, that are meshed
+  /// at a time; at least 1, and never less than two coarsest bricks. Decides memory and load balance, not the mesh.
+  std::size_t squares = 256;
   /// A file beside which what is meshed waits on disk until it is known which parts float; empty: in memory.
   std::filesystem::path spool;
 };
 
 /// The same mesh, byte for byte, as polygonize, handed to `sinks` piece by piece: memory O(piece + region's border +
-/// parts), with some 100 bytes a chunk.
+/// parts), with some 10 bytes a square.
 /// @throws SystemError also when the disk is full.
 PolygonizeStatistics polygonize_pieces(const Field& field, const PolygonizeOptions& options, const PieceOptions& pieces,
                                        std::span<MeshSink* const> sinks, const Task& task = {});
