@@ -27,7 +27,7 @@ constexpr int kFocusSamples = 192;            // Across the region, to find its 
 constexpr double kTolerance = 0.1;            // Of the resolution: below what shading shows.
 constexpr double kLeastBytesACell = 60.0;     // Two triangles and their share of vertices: below what meshing takes.
 constexpr double kMemoryShare = 0.5;          // Of the limit: larger meshes wait on disk while they are made.
-constexpr std::size_t kBytesAChunk = 4 << 20; // Of 64³ cells while it is meshed, twice what was measured on rock.
+constexpr std::size_t kBytesASquare = 4 << 20; // Of 64² cells while they are meshed, twice what was measured on rock.
 constexpr double kMostTriangles = 8e9;        // Vertices are numbered by 32 bits.
 
 // What one core does, measured on the canyon of the demo; for --dry-run only.
@@ -334,7 +334,7 @@ class Runner {
       // What is meshed waits in memory for the verdict on floating parts while it fits there, else beside the first file.
       const bool fits = static_cast<double>(expected_.mesh.bytes) < kMemoryShare * static_cast<double>(report_.memory_limit);
       PieceOptions pieces{.spool = fits ? std::filesystem::path() : run_.meshes.front()};
-      pieces.chunks = std::clamp<std::size_t>(report_.memory_limit / kBytesAChunk, 1, pieces.chunks);
+      pieces.squares = std::clamp<std::size_t>(report_.memory_limit / kBytesASquare, 1, pieces.squares);
       report_.polygonized = polygonize_pieces(*amplified().field, mesh_options(), pieces, writers.sinks(), task_);
     } else {
       whole_mesh(writers);

@@ -18,7 +18,7 @@ TEST(MeshMeasure, AgreesWithTheCheckOfTheWholeMesh) {
     const PolygonizeOptions options{.region = {Vec3(-3.0), Vec3(3.0, 3.0, 1.0)}, .resolution = 0.2, .border = border};
     MeshMeasure measure;
     MeshSink* const sinks[] = {&measure};
-    polygonize_pieces(*ball, options, {.chunks = 1}, sinks);
+    polygonize_pieces(*ball, options, {.squares = 1}, sinks);
     const MeshCheck check = check_mesh(polygonize(*ball, options).mesh);
     EXPECT_EQ(measure.vertices(), check.vertices);
     EXPECT_EQ(measure.triangles(), check.triangles);
