@@ -16,6 +16,7 @@ constexpr float kSharp = 1e30f;
 constexpr float kShortest = 1e-12f;
 
 constexpr int kWidth = 16;
+constexpr int kFewPoints = 2;  // So many are faster one by one.
 /// Sixteen floats: one AVX-512 register, two of AVX2, four of SSE2. Lane by lane, so the bits are the same.
 using Vector [[gnu::vector_size(kWidth * sizeof(float))]] = float;
 
@@ -87,6 +88,42 @@ template <int Order, int Chains>
   }
 }
 
+/// One point: the same operations, but a plane that cannot change anything, to the bit, is passed over. Shorter than a
+/// vector's chain of dependent steps, since most planes are.
+template <int Order>
+[[gnu::always_inline]] inline void fold_one(const PlaneView& planes, int at, float x, float y, float z, Fold& out) {
+  const float inverse = planes.rounding > 0.0f ? 1.0f / planes.rounding : kSharp;
+  const float sixth = planes.rounding / 6.0f;
+  float c = planes.nx[0] * x + planes.ny[0] * y + planes.nz[0] * z + planes.d[0];
+  float g[3] = {planes.nx[0], planes.ny[0], planes.nz[0]}, bend[6] = {};
+  for (int plane = 1; plane < planes.count; ++plane) {
+    const float n[3] = {planes.nx[plane], planes.ny[plane], planes.nz[plane]};
+    const float h = n[0] * x + n[1] * y + n[2] * z + planes.d[plane];
+    const bool above = h > c;
+    const float larger = above ? h : c, smaller = above ? c : h;
+    const float near = 1.0f - (larger - smaller) * inverse;
+    if (!(near > 0.0f) && !above) continue;
+    const float k = near > 0.0f ? near : 0.0f;
+    c = larger + sixth * (k * k * k);
+    if constexpr (Order >= 1) {
+      const float half = 0.5f * (k * k);
+      const float wh = above ? 1.0f - half : half;
+      const float wa = 1.0f - wh;
+      if constexpr (Order >= 2) {
+        const float weight = k * inverse, dx = g[0] - n[0], dy = g[1] - n[1], dz = g[2] - n[2];
+        const float squares[6] = {dx * dx, dy * dy, dz * dz, dy * dz, dx * dz, dx * dy};
+        for (int entry = 0; entry < 6; ++entry) bend[entry] = wa * bend[entry] + weight * squares[entry];
+      }
+      for (int axis = 0; axis < 3; ++axis) g[axis] = wa * g[axis] + wh * n[axis];
+    }
+  }
+  out.value[at] = c;
+  if constexpr (Order >= 1)
+    for (int axis = 0; axis < 3; ++axis) out.gradient[axis][at] = g[axis];
+  if constexpr (Order >= 2)
+    for (int entry = 0; entry < 6; ++entry) out.hessian[entry][at] = bend[entry];
+}
+
 template <int Order>
 [[gnu::always_inline]] inline void fold(const PlaneView& planes, int n, const float* x, const float* y, const float* z,
                                         Fold& out) {
@@ -95,6 +132,10 @@ template <int Order>
   if (n == kLanes) {
     for (int first = 0; first < kLanes; first += kChains * kWidth)
       fold_some<Order, kChains>(planes, first, x, y, z, out);
+    return;
+  }
+  if (n <= kFewPoints) {
+    for (int i = 0; i < n; ++i) fold_one<Order>(planes, i, x[i], y[i], z[i], out);
     return;
   }
   alignas(64) Lane px, py, pz;  // The last vector may reach beyond the caller's points.

@@ -42,23 +42,39 @@ constexpr double kLargestGain = 5.85;  // max K over t ∈ (0, 1] is 5.844, at t
   return (1.0 - 0.5 * k * k) * bend + chord_squared * k / rounding;
 }
 
-[[nodiscard]] double smax(double a, double b, double rounding) {
-  const double k = rounding > 0.0 ? std::max(1.0 - std::abs(a - b) / rounding, 0.0) : 0.0;
+/// 1 / R for smax; 0 for the sharp maximum.
+[[nodiscard]] double inverse_of(double rounding) { return rounding > 0.0 ? 1.0 / rounding : 0.0; }
+
+[[nodiscard]] double smax(double a, double b, double rounding, double inverse) {
+  const double k = std::max(1.0 - std::abs(a - b) * inverse, 0.0);
   return std::max(a, b) + rounding / 6.0 * k * k * k;
 }
 
-[[nodiscard]] Vec3 normal(const PackedPlanes& planes, std::size_t k) {
-  return {planes.nx[k], planes.ny[k], planes.nz[k]};
-}
+/// The planes' distances over a box.
+class PlanesOverBox {
+ public:
+  PlanesOverBox(const PackedPlanes& planes, const Box& box)
+      : planes_(planes), centre_(box.centre()), half_(0.5 * box.size()) {}
+
+  [[nodiscard]] double at_centre(std::size_t k) const { return glm::dot(planes_.normal(k), centre_) + planes_.d()[k]; }
+  [[nodiscard]] Interval range(std::size_t k) const {
+    const double centre = at_centre(k), reach = glm::dot(glm::abs(planes_.normal(k)), half_);
+    return {centre - reach, centre + reach};
+  }
+
+ private:
+  const PackedPlanes& planes_;
+  Vec3 centre_, half_;
+};
 
 /// A lower bound of |g| for every convex sum g of the normals: how far they reach along their mean direction.
 [[nodiscard]] double least_gradient(const PackedPlanes& planes) {
   Vec3 mean{0.0};
-  for (std::size_t k = 0; k < planes.size(); ++k) mean += normal(planes, k);
+  for (std::size_t k = 0; k < planes.size(); ++k) mean += planes.normal(k);
   const double length = glm::length(mean);
   if (length < 1e-6) return 0.0;
   double least = 1.0;
-  for (std::size_t k = 0; k < planes.size(); ++k) least = std::min(least, glm::dot(normal(planes, k), mean) / length);
+  for (std::size_t k = 0; k < planes.size(); ++k) least = std::min(least, glm::dot(planes.normal(k), mean) / length);
   return std::max(least, 0.0);
 }
 
@@ -69,7 +85,7 @@ constexpr double kLargestGain = 5.85;  // max K over t ∈ (0, 1] is 5.844, at t
   for (std::size_t k = 1; k < planes.size(); ++k) {
     double chord_squared = 0.0;
     for (std::size_t i = 0; i < k; ++i) {
-      const Vec3 chord = normal(planes, i) - normal(planes, k);
+      const Vec3 chord = planes.normal(i) - planes.normal(k);
       chord_squared = std::max(chord_squared, glm::dot(chord, chord));
     }
     bend = bend_after(bend, chord_squared, largest_weights.empty() ? 1.0 : largest_weights[k], rounding);
@@ -83,27 +99,28 @@ constexpr double kLargestGain = 5.85;  // max K over t ∈ (0, 1] is 5.844, at t
 }
 
 [[nodiscard]] lanes::PlaneView view(const PackedPlanes& planes, float rounding) {
-  return {planes.nx.data(), planes.ny.data(), planes.nz.data(), planes.d.data(), static_cast<int>(planes.size()),
+  return {planes.nx(), planes.ny(), planes.nz(), planes.d(), static_cast<int>(planes.size()),
           rounding};
 }
 
 }  // namespace
 
-void PackedPlanes::push_back(const Plane& plane) {
+PackedPlanes::PackedPlanes(std::span<const Plane> planes) : rows_(4 * planes.size()) {
   // Adding 0 turns −0 into 0: no sum in the fold is then −0, and dropping a plane cannot change the sign of a zero.
-  nx.push_back(static_cast<float>(plane.normal.x) + 0.0f);
-  ny.push_back(static_cast<float>(plane.normal.y) + 0.0f);
-  nz.push_back(static_cast<float>(plane.normal.z) + 0.0f);
-  d.push_back(static_cast<float>(plane.offset) + 0.0f);
+  const std::size_t n = planes.size();
+  for (std::size_t k = 0; k < n; ++k) {
+    for (int axis = 0; axis < 3; ++axis) rows_[axis * n + k] = static_cast<float>(planes[k].normal[axis]) + 0.0f;
+    rows_[3 * n + k] = static_cast<float>(planes[k].offset) + 0.0f;
+  }
 }
 
-PackedPlanes PackedPlanes::only(std::span<const std::size_t> indices) const {
-  const auto chosen = [&](const std::vector<float>& row) {
-    std::vector<float> result(indices.size());
-    std::transform(indices.begin(), indices.end(), result.begin(), [&](std::size_t k) { return row[k]; });
-    return result;
-  };
-  return {chosen(nx), chosen(ny), chosen(nz), chosen(d)};
+PackedPlanes PackedPlanes::only(std::span<const std::uint32_t> indices) const {
+  PackedPlanes result;
+  result.rows_.resize(4 * indices.size());
+  for (int row = 0; row < 4; ++row)
+    for (std::size_t i = 0; i < indices.size(); ++i)
+      result.rows_[row * indices.size() + i] = rows_[row * size() + indices[i]];
+  return result;
 }
 
 PolytopeKernel::PolytopeKernel(std::span<const Plane> planes, double rounding, Warp warp, Vec3 relief_origin)
@@ -118,8 +135,9 @@ PolytopeKernel::PolytopeKernel(std::span<const Plane> planes, double rounding, W
     require(std::abs(glm::length(plane.normal) - 1.0) < kUnitTolerance, "normal", "a unit vector",
             glm::length(plane.normal));
     require(std::isfinite(plane.offset), "offset", "finite", plane.offset);
-    planes_.push_back(plane);
+    farthest_ = std::max(farthest_, std::abs(plane.offset));
   }
+  planes_ = PackedPlanes(planes);
   if (warp_.active()) lipschitz_ = warped_lipschitz(planes_, {}, rounding_, warp_);
 }
 
@@ -132,6 +150,15 @@ void PolytopeKernel::values(std::size_t n, const float* x, const float* y, const
       warped(count, x + first, y + first, z + first, out + first, block_gradients);
     else
       unwarped(count, x + first, y + first, z + first, out + first, block_gradients);
+  }
+}
+
+void PolytopeKernel::folded(std::size_t n, const float* x, const float* y, const float* z, float* out) const noexcept {
+  lanes::Fold fold;
+  for (std::size_t first = 0; first < n; first += lanes::kLanes) {
+    const int count = static_cast<int>(std::min<std::size_t>(lanes::kLanes, n - first));
+    lanes::fold_values(view(planes_, rounding_), count, x + first, y + first, z + first, fold);
+    std::copy_n(fold.value, count, out + first);
   }
 }
 
@@ -187,73 +214,64 @@ void PolytopeKernel::warped(int n, const float* x, const float* y, const float* 
   }
 }
 
-Interval PolytopeKernel::plane_bound(std::size_t plane, const Box& local) const noexcept {
-  const Vec3 n = normal(planes_, plane);
-  const Vec3 half = 0.5 * local.size();
-  const double centre = glm::dot(n, local.centre()) + planes_.d[plane];
-  const double reach = glm::dot(glm::abs(n), half);
-  return {centre - reach, centre + reach};
-}
-
 double PolytopeKernel::rounding_slack(const Box& local) const noexcept {
   // Each plane's sum of four terms and each fold step may be off by an epsilon of the largest number in it.
-  double largest = largest_coordinate_sum(local) + rounding_;
-  for (const float offset : planes_.d)
-    largest = std::max(largest, largest_coordinate_sum(local) + std::abs(double{offset}));
+  const double largest = largest_coordinate_sum(local) + std::max<double>(rounding_, farthest_);
   return 1e-6 + static_cast<double>(planes_.size() + 8) * std::numeric_limits<float>::epsilon() * largest;
 }
 
 Interval PolytopeKernel::bound(const Box& local) const noexcept {
   // smax grows with both arguments, so folding the ends bounds the fold; the fold is 1-Lipschitz, so its value at the
   // centre bounds it too. The warp only carves: c(p) ≤ b(p) ≤ c(p) + amplitude, since c is convex and 1-Lipschitz.
-  Interval fold = plane_bound(0, local);
-  const Vec3 centre = local.centre();
-  double at_centre = glm::dot(normal(planes_, 0), centre) + planes_.d[0];
+  const PlanesOverBox h(planes_, local);
+  const double inverse = inverse_of(rounding_);
+  Interval fold = h.range(0);
+  double at_centre = h.at_centre(0);
   for (std::size_t k = 1; k < planes_.size(); ++k) {
-    const Interval h = plane_bound(k, local);
-    fold = {smax(fold.lo, h.lo, rounding_), smax(fold.hi, h.hi, rounding_)};
-    at_centre = smax(at_centre, glm::dot(normal(planes_, k), centre) + planes_.d[k], rounding_);
+    const Interval range = h.range(k);
+    fold = {smax(fold.lo, range.lo, rounding_, inverse), smax(fold.hi, range.hi, rounding_, inverse)};
+    at_centre = smax(at_centre, h.at_centre(k), rounding_, inverse);
   }
   const double reach = local.half_diagonal();
   const double slack = rounding_slack(local);
-  const double carved = warp_.active() ? warp_.amplitude : 0.0;
-  return {std::max(fold.lo, at_centre - reach) - slack, std::min(fold.hi, at_centre + reach) + slack + carved};
+  return {std::max(fold.lo, at_centre - reach) - slack, std::min(fold.hi, at_centre + reach) + slack + depth()};
 }
 
 PolytopeKernel PolytopeKernel::narrow(const Box& local) const {
   // A warped point lies up to `amplitude` outside of the box: planes are judged there too.
-  const Box reached = warp_.active() ? local.grown(warp_.amplitude) : local;
-  const Vec3 centre = reached.centre();
+  const Box reached = local.grown(depth());
   const double reach = reached.half_diagonal();
   const double apart =
       rounding_ + 1e-5 + 2.0 * rounding_slack(reached);  // Beyond this the fold weight is 0 to the bit.
 
-  std::vector<std::size_t> kept{0};
+  const PlanesOverBox h(planes_, reached);
+  const double inverse = inverse_of(rounding_);
+  std::vector<std::uint32_t> kept{0};
   std::vector<double> largest_weights{0.0};
-  Interval fold = plane_bound(0, reached);
-  double at_centre = glm::dot(normal(planes_, 0), centre) + planes_.d[0];
-  for (std::size_t k = 1; k < planes_.size(); ++k) {
-    const Interval h = plane_bound(k, reached);
-    if (h.hi <= fold.lo - apart) continue;
-    if (h.lo >= fold.hi + apart) {
+  kept.reserve(planes_.size());
+  largest_weights.reserve(planes_.size());
+  Interval fold = h.range(0);
+  double at_centre = h.at_centre(0);
+  for (std::uint32_t k = 1; k < planes_.size(); ++k) {
+    const Interval range = h.range(k);
+    if (range.hi <= fold.lo - apart) continue;
+    if (range.lo >= fold.hi + apart) {
       kept = {k};
       largest_weights = {0.0};
-      fold = h;
-      at_centre = glm::dot(normal(planes_, k), centre) + planes_.d[k];
+      fold = range;
+      at_centre = h.at_centre(k);
       continue;
     }
-    const double gap = std::max({h.lo - fold.hi, fold.lo - h.hi, 0.0});
+    const double gap = std::max({range.lo - fold.hi, fold.lo - range.hi, 0.0});
     kept.push_back(k);
     largest_weights.push_back(rounding_ > 0.0f ? std::clamp(1.0 - (gap - 1e-5) / rounding_, 0.0, 1.0) : 1.0);
-    at_centre = smax(at_centre, glm::dot(normal(planes_, k), centre) + planes_.d[k], rounding_);
-    fold = intersection(Interval{smax(fold.lo, h.lo, rounding_), smax(fold.hi, h.hi, rounding_)},
-                        Interval{at_centre - reach, at_centre + reach});
+    at_centre = smax(at_centre, h.at_centre(k), rounding_, inverse);
+    fold = intersection(
+        Interval{smax(fold.lo, range.lo, rounding_, inverse), smax(fold.hi, range.hi, rounding_, inverse)},
+        Interval{at_centre - reach, at_centre + reach});
   }
-  PolytopeKernel result;
-  result.planes_ = planes_.only(kept);
-  result.rounding_ = rounding_;
-  result.warp_ = warp_;
-  result.relief_origin_ = relief_origin_;
+  PolytopeKernel result = *this;
+  if (kept.size() < planes_.size()) result.planes_ = planes_.only(kept);
   if (warp_.active())
     result.lipschitz_ = std::min(lipschitz_, warped_lipschitz(result.planes_, largest_weights, rounding_, warp_));
   return result;
@@ -264,7 +282,7 @@ std::optional<Box> PolytopeKernel::support() const noexcept {
   // tells whether it is bounded.
   constexpr double kFar = 1e7;
   std::vector<Plane> sides;
-  for (std::size_t k = 0; k < planes_.size(); ++k) sides.push_back({normal(planes_, k), planes_.d[k]});
+  for (std::size_t k = 0; k < planes_.size(); ++k) sides.push_back({planes_.normal(k), planes_.d()[k]});
   for (int axis = 0; axis < 3; ++axis)
     for (const double sign : {-1.0, 1.0}) {
       Plane side{Vec3(0.0), -kFar};

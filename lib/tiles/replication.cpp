@@ -10,6 +10,7 @@
 
 #include "outcrop/core/error.h"
 #include "outcrop/core/parallel.h"
+#include "outcrop/implicit/polytope_union.h"
 
 namespace outcrop {
 namespace {
@@ -54,10 +55,7 @@ Box relative(const Box& box, const Vec3& position) { return box.moved(-position)
 /// What a Replication narrows to: an explicit list of blocks.
 class PlacedBlocks final : public Field {
  public:
-  struct Item {
-    PolytopeKernel kernel;
-    Vec3 position;  ///< Of the block's centre, tile frame without wrapping.
-  };
+  using Item = PlacedKernel;  ///< Position in the tile frame, without wrapping.
 
   /// @param growth  Of all blocks, where there is no crack floor to ask.
   PlacedBlocks(std::shared_ptr<const Replication> root, FieldPtr crack_floor, double growth, std::vector<Item> items)
@@ -128,38 +126,29 @@ class PlacedBlocks final : public Field {
     std::ranges::fill(gradients, Vec3(0.0));
     if (items_.empty()) return;
 
-    std::array<Vec3, kChunk> tile_points;
-    for (std::size_t i = 0; i < n; ++i) tile_points[i] = root_->to_tile(points[i]);
-    std::array<double, kChunk> growth;
+    std::array<double, kChunk> x, y, z, growth;
     std::array<Vec3, kChunk> growth_gradients;
+    for (std::size_t i = 0; i < n; ++i) {
+      const Vec3 p = root_->to_tile(points[i]);
+      x[i] = p.x, y[i] = p.y, z[i] = p.z;
+    }
     if (!crack_floor_) {
-      std::fill_n(growth.begin(), n, growth_);
+      std::fill_n(growth.begin(), n, o.swelling + growth_);
     } else {
-      crack_floor_->values(points, {growth.data(), n}, wants_gradients ? std::span(growth_gradients).first(n) : std::span<Vec3>{});
+      crack_floor_->values(points, {growth.data(), n},
+                           wants_gradients ? std::span(growth_gradients).first(n) : std::span<Vec3>{});
       for (std::size_t i = 0; i < n; ++i) {
         const double raw = -o.closure_slope * growth[i];
-        growth[i] = std::clamp(raw, 0.0, o.closure);
+        growth[i] = o.swelling + std::clamp(raw, 0.0, o.closure);
         if (wants_gradients) growth_gradients[i] *= raw > 0.0 && raw < o.closure ? -o.closure_slope : 0.0;
       }
     }
-    std::array<float, kChunk> x, y, z, b;
-    std::array<Vec3f, kChunk> g;
-    for (const Item& item : items_) {
-      for (std::size_t i = 0; i < n; ++i) {
-        const Vec3 local = tile_points[i] - item.position;
-        x[i] = static_cast<float>(local.x);
-        y[i] = static_cast<float>(local.y);
-        z[i] = static_cast<float>(local.z);
-      }
-      item.kernel.values(n, x.data(), y.data(), z.data(), b.data(), wants_gradients ? g.data() : nullptr);
-      for (std::size_t i = 0; i < n; ++i) {
-        const double value = static_cast<double>(b[i]) - o.swelling - growth[i];
-        if (value >= values[i]) continue;
-        values[i] = value;
-        if (!wants_gradients) continue;
-        gradients[i] = root_->rock_.world_from_tile * Vec3(g[i]);
-        if (crack_floor_) gradients[i] -= growth_gradients[i];
-      }
+    lower_to_union(items_, {{x.data(), n}, {y.data(), n}, {z.data(), n}}, std::span(growth).first(n), values,
+                   gradients);
+    for (std::size_t i = 0; i < gradients.size(); ++i) {
+      if (values[i] == o.cap) continue;
+      gradients[i] = root_->rock_.world_from_tile * gradients[i];
+      if (crack_floor_) gradients[i] -= growth_gradients[i];
     }
   }
 
@@ -374,7 +363,7 @@ void Replication::values(const Points& points, std::span<double> values, std::sp
     double best = options_.cap;
     Vec3 best_gradient(0.0);
     bool has_growth = false;
-    double growth = 0.0;
+    double growth = options_.swelling;
     Vec3 growth_gradient(0.0);
     const IVec3 global(glm::floor(p / voxel));
     const IVec3 cell(floor_div(global.x, voxels_), floor_div(global.y, voxels_), floor_div(global.z, voxels_));
@@ -389,7 +378,7 @@ void Replication::values(const Points& points, std::span<double> values, std::sp
       if (!shape.support.contains(local)) continue;
       if (!has_growth && options_.crack_floor) {
         const double raw = -options_.closure_slope * options_.crack_floor->value(points[i]);
-        growth = std::clamp(raw, 0.0, options_.closure);
+        growth = options_.swelling + std::clamp(raw, 0.0, options_.closure);
         if (!gradients.empty() && raw > 0.0 && raw < options_.closure)
           growth_gradient = -options_.closure_slope * options_.crack_floor->gradient(points[i]);
         has_growth = true;
@@ -398,7 +387,7 @@ void Replication::values(const Points& points, std::span<double> values, std::sp
       float b = 0.0f;
       Vec3f g(0.0f);
       shape.kernel.values(1, &x, &y, &z, &b, gradients.empty() ? nullptr : &g);
-      const double value = static_cast<double>(b) - options_.swelling - growth;
+      const double value = static_cast<double>(b) - growth;
       if (value >= best) continue;
       best = value;
       best_gradient = rock_.world_from_tile * Vec3(g) - growth_gradient;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -30,13 +31,22 @@ struct Warp {
 
 /// Planes packed for the hot loop: floats relative to the polytope's own centre, so that results do not depend on the
 /// box a field was narrowed to.
-struct PackedPlanes {
-  std::vector<float> nx, ny, nz, d;
+class PackedPlanes {
+ public:
+  PackedPlanes() = default;
+  explicit PackedPlanes(std::span<const Plane> planes);
 
-  [[nodiscard]] std::size_t size() const noexcept { return nx.size(); }
-  void push_back(const Plane& plane);
+  [[nodiscard]] std::size_t size() const noexcept { return rows_.size() / 4; }
+  [[nodiscard]] const float* nx() const noexcept { return rows_.data(); }
+  [[nodiscard]] const float* ny() const noexcept { return rows_.data() + size(); }
+  [[nodiscard]] const float* nz() const noexcept { return rows_.data() + 2 * size(); }
+  [[nodiscard]] const float* d() const noexcept { return rows_.data() + 3 * size(); }
+  [[nodiscard]] Vec3 normal(std::size_t k) const noexcept { return {nx()[k], ny()[k], nz()[k]}; }
   /// Those planes, in the order of `indices`.
-  [[nodiscard]] PackedPlanes only(std::span<const std::size_t> indices) const;
+  [[nodiscard]] PackedPlanes only(std::span<const std::uint32_t> indices) const;
+
+ private:
+  std::vector<float> rows_;  ///< All nx, then all ny, nz and d.
 };
 
 /// Evaluates one rounded polytope: the fold, in the order of `planes`, of
@@ -58,6 +68,13 @@ class PolytopeKernel {
   void values(std::size_t n, const float* x, const float* y, const float* z, float* out,
               Vec3f* gradients) const noexcept;
 
+  /// out[i] = c(local[i]), the fold before the relief carves: c − ε ≤ b ≤ c + depth() + ε with ε = rounding_slack().
+  void folded(std::size_t n, const float* x, const float* y, const float* z, float* out) const noexcept;
+  /// The relief's largest depth: the warp's amplitude, 0 without one.
+  [[nodiscard]] double depth() const noexcept { return warp_.active() ? warp_.amplitude : 0.0; }
+  /// How far rounding may move a value in the box.
+  [[nodiscard]] double rounding_slack(const Box& local) const noexcept;
+
   /// Contains b over the box (relative to the centre): fold of plane intervals, tightened by the centre value, widened
   /// by the warp's amplitude upwards only (the relief only carves).
   [[nodiscard]] Interval bound(const Box& local) const noexcept;
@@ -75,14 +92,13 @@ class PolytopeKernel {
  private:
   void unwarped(int n, const float* x, const float* y, const float* z, float* out, Vec3f* gradients) const noexcept;
   void warped(int n, const float* x, const float* y, const float* z, float* out, Vec3f* gradients) const noexcept;
-  [[nodiscard]] Interval plane_bound(std::size_t plane, const Box& local) const noexcept;
-  [[nodiscard]] double rounding_slack(const Box& local) const noexcept;
 
   PackedPlanes planes_;
   float rounding_ = 0.0f;
   Warp warp_;
   Vec3 relief_origin_{0.0};
   double lipschitz_ = 1.0;
+  double farthest_ = 0.0;  ///< The largest |offset| of a plane.
 };
 
 /// A PolytopeKernel placed in the world as a Field of its own.
@@ -98,6 +114,7 @@ class RoundedPolytope final : public Field {
   [[nodiscard]] FieldPtr narrow(const Box& box) const override;
   [[nodiscard]] std::optional<Box> support() const noexcept override;
   [[nodiscard]] const PolytopeKernel& kernel() const noexcept { return kernel_; }
+  [[nodiscard]] const Vec3& centre() const noexcept { return centre_; }
 
  private:
   PolytopeKernel kernel_;

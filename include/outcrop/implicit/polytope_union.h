@@ -1,0 +1,44 @@
+/// Many rounded polytopes at once: what a pile of rock is.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "outcrop/implicit/field.h"
+#include "outcrop/implicit/rounded_polytope.h"
+
+namespace outcrop {
+
+/// A polytope and where its centre stands.
+struct PlacedKernel {
+  PolytopeKernel kernel;
+  Vec3 position{0.0};
+};
+
+/// values[i] = min(values[i], b_k(p_i − position_k) − growth[i] over the polytopes k); where that lowers a value,
+/// gradients[i] = ∇b_k of the first polytope that is as low.
+///
+/// `growth` has points.size() elements ≥ 0, or none; `gradients` as many or none. Equal to the bit to asking each
+/// polytope alone. Cost: the folds of all polytopes at all points, and the relief of those few that can be the lowest:
+/// a fold bounds its carved value from both sides.
+void lower_to_union(std::span<const PlacedKernel> polytopes, const Points& points, std::span<const double> growth,
+                    std::span<double> values, std::span<Vec3> gradients) noexcept;
+
+/// The union of rounded polytopes, as union_of makes it where all its fields are RoundedPolytopes.
+class PolytopeUnion final : public Field {
+ public:
+  /// @throws ParameterError without polytopes.
+  explicit PolytopeUnion(std::vector<PlacedKernel> polytopes);
+
+  void values(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept override;
+  [[nodiscard]] double lipschitz() const noexcept override { return lipschitz_; }
+  [[nodiscard]] Interval bound(const Box& box) const noexcept override;
+  [[nodiscard]] FieldPtr narrow(const Box& box) const override;
+  [[nodiscard]] std::optional<Box> support() const noexcept override;
+
+ private:
+  std::vector<PlacedKernel> polytopes_;
+  double lipschitz_ = 1.0;
+};
+
+}  // namespace outcrop
