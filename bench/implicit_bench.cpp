@@ -81,7 +81,7 @@ BENCHMARK(whole_block)
 void narrowed_brick(benchmark::State& state) {
   const Vec3 centre = 1.4 * glm::normalize(Vec3(1, 2, 3));
   const Box box{centre - Vec3(0.4), centre + Vec3(0.4)};
-  run(state, random_kernel(20, state.range(0) ? rough_warp() : Warp{}).narrow(box), Lattice(9, 0.8, centre), false);
+  run(state, random_kernel(20, state.range(0) ? rough_warp() : Warp{}).narrow(TurnedBox(box)), Lattice(9, 0.8, centre), false);
 }
 BENCHMARK(narrowed_brick)->ArgNames({"warp"})->Arg(0)->Arg(1);
 
@@ -89,7 +89,7 @@ void narrowing(benchmark::State& state) {
   const Vec3 centre = 1.4 * glm::normalize(Vec3(1, 2, 3));
   const Box box{centre - Vec3(0.4), centre + Vec3(0.4)};
   const PolytopeKernel kernel = random_kernel(20, state.range(0) ? rough_warp() : Warp{});
-  for (auto _ : state) benchmark::DoNotOptimize(kernel.narrow(box));
+  for (auto _ : state) benchmark::DoNotOptimize(kernel.narrow(TurnedBox(box)));
 }
 BENCHMARK(narrowing)->ArgNames({"warp"})->Arg(0)->Arg(1);
 

@@ -30,6 +30,11 @@ class FoldField final : public Field {
   }
 
   void values(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept override {
+    if (is_union()) {
+      fields_[0]->values(points, values, gradients);
+      for (std::size_t k = 1; k < fields_.size(); ++k) fields_[k]->lower(points, values, gradients);
+      return;
+    }
     std::array<double, kBlock> other;
     std::array<Vec3, kBlock> other_gradients;
     for (std::size_t first = 0; first < points.size(); first += kBlock) {
@@ -48,6 +53,11 @@ class FoldField final : public Field {
         }
       }
     }
+  }
+
+  void lower(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept override {
+    if (!is_union()) return Field::lower(points, values, gradients);
+    for (const FieldPtr& field : fields_) field->lower(points, values, gradients);
   }
 
   [[nodiscard]] double lipschitz() const noexcept override { return lipschitz_; }
@@ -119,6 +129,8 @@ class FoldField final : public Field {
   }
 
  private:
+  [[nodiscard]] bool is_union() const noexcept { return sign_ < 0.0 && radius_ == 0.0; }
+
   struct Blend {
     double value;
     double weight;  ///< Of the second argument's gradient.
@@ -330,13 +342,15 @@ class Transformed final : public UnaryField {
 
 /// One node over all polytopes is much faster than a fold of nodes; null when some field is none.
 [[nodiscard]] FieldPtr union_of_polytopes(const std::vector<FieldPtr>& fields) {
-  std::vector<PlacedKernel> polytopes;
+  std::vector<PolytopeKernel> kernels;
+  std::vector<Vec3> positions;
   for (const FieldPtr& field : fields) {
     const auto* const polytope = dynamic_cast<const RoundedPolytope*>(field.get());
     if (!polytope) return nullptr;
-    polytopes.push_back({polytope->kernel(), polytope->centre()});
+    kernels.push_back(polytope->kernel());
+    positions.push_back(polytope->centre());
   }
-  return std::make_shared<PolytopeUnion>(std::move(polytopes));
+  return std::make_shared<PolytopeUnion>(std::move(kernels), positions);
 }
 
 [[nodiscard]] FieldPtr fold_of(Side side, double radius, std::vector<FieldPtr> fields) {

@@ -1,11 +1,29 @@
 #include "outcrop/implicit/field.h"
 
+#include <algorithm>
+#include <array>
+
 namespace outcrop {
 namespace {
 
 constexpr double kDifferenceStep = 1e-4;  // Metres; central differences of a PointField.
 
 }  // namespace
+
+void Field::lower(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept {
+  constexpr std::size_t kChunk = 128;
+  std::array<double, kChunk> own;
+  std::array<Vec3, kChunk> own_gradients;
+  for (std::size_t first = 0; first < points.size(); first += kChunk) {
+    const std::size_t n = std::min(kChunk, points.size() - first);
+    this->values(points.subspan(first, n), {own.data(), n}, {own_gradients.data(), gradients.empty() ? 0 : n});
+    for (std::size_t i = 0; i < n; ++i) {
+      if (own[i] >= values[first + i]) continue;
+      values[first + i] = own[i];
+      if (!gradients.empty()) gradients[first + i] = own_gradients[i];
+    }
+  }
+}
 
 Interval Field::bound(const Box& box) const noexcept {
   const double centre = value(box.centre());

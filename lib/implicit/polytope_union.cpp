@@ -60,7 +60,7 @@ Box box_of(const Points& points) noexcept {
 void lower_chunk(std::span<const PlacedKernel> polytopes, const Points& points, const double* growth,
                  std::span<double> values, std::span<Vec3> gradients) noexcept {
   const std::size_t n = points.size();
-  const Box box = box_of(points);
+  const TurnedBox box(box_of(points));
   std::array<Floats, kRemembered> folds;
   std::array<double, kRemembered> slacks;
   Doubles highest;  // No point's result is above.
@@ -69,9 +69,9 @@ void lower_chunk(std::span<const PlacedKernel> polytopes, const Points& points, 
   for (std::size_t k = 0; k < remembered; ++k) {
     const auto& [kernel, position] = polytopes[k];
     const Local local(points, position);
-    kernel.folded(n, local.x.data(), local.y.data(), local.z.data(), folds[k].data());
-    slacks[k] = 2.0 * kernel.rounding_slack(box.moved(-position));
-    lower(n, folds[k].data(), kernel.depth() + slacks[k], growth, highest.data());
+    kernel->folded(n, local.x.data(), local.y.data(), local.z.data(), folds[k].data());
+    slacks[k] = 2.0 * kernel->rounding_slack(box.moved(-position));
+    lower(n, folds[k].data(), kernel->depth() + slacks[k], growth, highest.data());
   }
   for (std::size_t k = 0; k < polytopes.size(); ++k) {
     const auto& [kernel, position] = polytopes[k];
@@ -82,10 +82,10 @@ void lower_chunk(std::span<const PlacedKernel> polytopes, const Points& points, 
     if (k < remembered) {
       slack = slacks[k];
     } else {
-      kernel.folded(n, local.x.data(), local.y.data(), local.z.data(), fold.data());
-      slack = 2.0 * kernel.rounding_slack(box.moved(-position));
+      kernel->folded(n, local.x.data(), local.y.data(), local.z.data(), fold.data());
+      slack = 2.0 * kernel->rounding_slack(box.moved(-position));
     }
-    if (kernel.depth() == 0.0 && gradients.empty()) {
+    if (kernel->depth() == 0.0 && gradients.empty()) {
       lower(n, fold.data(), 0.0, growth, values.data());
       continue;
     }
@@ -104,7 +104,7 @@ void lower_chunk(std::span<const PlacedKernel> polytopes, const Points& points, 
       y[j] = local.y[chosen[j]];
       z[j] = local.z[chosen[j]];
     }
-    kernel.values(count, x.data(), y.data(), z.data(), value.data(), gradients.empty() ? nullptr : gradient.data());
+    kernel->values(count, x.data(), y.data(), z.data(), value.data(), gradients.empty() ? nullptr : gradient.data());
     for (std::size_t j = 0; j < count; ++j) {
       const std::size_t i = chosen[j];
       const double candidate = static_cast<double>(value[j]) - growth[i];
@@ -127,9 +127,14 @@ void lower_to_union(std::span<const PlacedKernel> polytopes, const Points& point
   }
 }
 
-PolytopeUnion::PolytopeUnion(std::vector<PlacedKernel> polytopes) : polytopes_(std::move(polytopes)) {
-  require(!polytopes_.empty(), "polytopes", "at least 1", 0.0);
-  for (const PlacedKernel& p : polytopes_) lipschitz_ = std::max(lipschitz_, p.kernel.lipschitz());
+PolytopeUnion::PolytopeUnion(std::vector<PolytopeKernel> kernels, std::span<const Vec3> positions)
+    : kernels_(std::move(kernels)) {
+  require(!kernels_.empty() && kernels_.size() == positions.size(), "kernels", "at least 1, as many as positions",
+          static_cast<double>(kernels_.size()));
+  for (std::size_t k = 0; k < kernels_.size(); ++k) {
+    polytopes_.push_back({&kernels_[k], positions[k]});
+    lipschitz_ = std::max(lipschitz_, kernels_[k].lipschitz());
+  }
 }
 
 void PolytopeUnion::values(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept {
@@ -137,10 +142,14 @@ void PolytopeUnion::values(const Points& points, std::span<double> values, std::
   lower_to_union(polytopes_, points, {}, values, gradients);
 }
 
+void PolytopeUnion::lower(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept {
+  lower_to_union(polytopes_, points, {}, values, gradients);
+}
+
 Interval PolytopeUnion::bound(const Box& box) const noexcept {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Interval result{kInfinity, kInfinity};
-  for (const auto& [kernel, position] : polytopes_) result = min(result, kernel.bound(box.moved(-position)));
+  for (const auto& [kernel, position] : polytopes_) result = min(result, kernel->bound(TurnedBox(box).moved(-position)));
   return result;
 }
 
@@ -149,21 +158,24 @@ FieldPtr PolytopeUnion::narrow(const Box& box) const {
   lowest.reserve(polytopes_.size());
   double highest = std::numeric_limits<double>::infinity();
   for (const auto& [kernel, position] : polytopes_) {
-    const Interval bound = kernel.bound(box.moved(-position));
+    const Interval bound = kernel->bound(TurnedBox(box).moved(-position));
     lowest.push_back(bound.lo);
     highest = std::min(highest, bound.hi);
   }
-  std::vector<PlacedKernel> kept;
-  for (std::size_t k = 0; k < polytopes_.size(); ++k)
-    if (const auto& [kernel, position] = polytopes_[k]; lowest[k] <= highest)
-      kept.push_back({kernel.narrow(box.moved(-position)), position});
-  return std::make_shared<PolytopeUnion>(std::move(kept));
+  std::vector<PolytopeKernel> kept;
+  std::vector<Vec3> positions;
+  for (std::size_t k = 0; k < polytopes_.size(); ++k) {
+    if (lowest[k] > highest) continue;
+    positions.push_back(polytopes_[k].position);
+    kept.push_back(kernels_[k].narrow(TurnedBox(box).moved(-positions.back())));
+  }
+  return std::make_shared<PolytopeUnion>(std::move(kept), positions);
 }
 
 std::optional<Box> PolytopeUnion::support() const noexcept {
   Box result;
   for (const auto& [kernel, position] : polytopes_) {
-    const std::optional<Box> local = kernel.support();
+    const std::optional<Box> local = kernel->support();
     if (!local) return std::nullopt;
     result = hull(result, local->moved(position));
   }

@@ -53,18 +53,23 @@ constexpr double kLargestGain = 5.85;  // max K over t ∈ (0, 1] is 5.844, at t
 /// The planes' distances over a box.
 class PlanesOverBox {
  public:
-  PlanesOverBox(const PackedPlanes& planes, const Box& box)
-      : planes_(planes), centre_(box.centre()), half_(0.5 * box.size()) {}
+  /// Over the box and what lies within `around` of it.
+  PlanesOverBox(const PackedPlanes& planes, const TurnedBox& box, double around)
+      : planes_(planes), box_(box), around_(around) {}
 
-  [[nodiscard]] double at_centre(std::size_t k) const { return glm::dot(planes_.normal(k), centre_) + planes_.d()[k]; }
+  [[nodiscard]] double at_centre(std::size_t k) const {
+    return glm::dot(planes_.normal(k), box_.centre) + planes_.d()[k];
+  }
   [[nodiscard]] Interval range(std::size_t k) const {
-    const double centre = at_centre(k), reach = glm::dot(glm::abs(planes_.normal(k)), half_);
+    const Vec3 along = glm::abs(planes_.normal(k) * box_.half);
+    const double centre = at_centre(k), reach = along.x + along.y + along.z + around_;
     return {centre - reach, centre + reach};
   }
 
  private:
   const PackedPlanes& planes_;
-  Vec3 centre_, half_;
+  const TurnedBox& box_;
+  double around_;
 };
 
 /// A lower bound of |g| for every convex sum g of the normals: how far they reach along their mean direction.
@@ -214,16 +219,17 @@ void PolytopeKernel::warped(int n, const float* x, const float* y, const float* 
   }
 }
 
-double PolytopeKernel::rounding_slack(const Box& local) const noexcept {
+double PolytopeKernel::rounding_slack(const TurnedBox& local) const noexcept {
   // Each plane's sum of four terms and each fold step may be off by an epsilon of the largest number in it.
-  const double largest = largest_coordinate_sum(local) + std::max<double>(rounding_, farthest_);
+  const Vec3 centre = glm::abs(local.centre);
+  const double largest = centre.x + centre.y + centre.z + std::sqrt(3.0) * local.radius + std::max<double>(rounding_, farthest_);
   return 1e-6 + static_cast<double>(planes_.size() + 8) * std::numeric_limits<float>::epsilon() * largest;
 }
 
-Interval PolytopeKernel::bound(const Box& local) const noexcept {
+Interval PolytopeKernel::bound(const TurnedBox& local) const noexcept {
   // smax grows with both arguments, so folding the ends bounds the fold; the fold is 1-Lipschitz, so its value at the
   // centre bounds it too. The warp only carves: c(p) ≤ b(p) ≤ c(p) + amplitude, since c is convex and 1-Lipschitz.
-  const PlanesOverBox h(planes_, local);
+  const PlanesOverBox h(planes_, local, 0.0);
   const double inverse = inverse_of(rounding_);
   Interval fold = h.range(0);
   double at_centre = h.at_centre(0);
@@ -232,19 +238,19 @@ Interval PolytopeKernel::bound(const Box& local) const noexcept {
     fold = {smax(fold.lo, range.lo, rounding_, inverse), smax(fold.hi, range.hi, rounding_, inverse)};
     at_centre = smax(at_centre, h.at_centre(k), rounding_, inverse);
   }
-  const double reach = local.half_diagonal();
+  const double reach = local.radius;
   const double slack = rounding_slack(local);
   return {std::max(fold.lo, at_centre - reach) - slack, std::min(fold.hi, at_centre + reach) + slack + depth()};
 }
 
-PolytopeKernel PolytopeKernel::narrow(const Box& local) const {
-  // A warped point lies up to `amplitude` outside of the box: planes are judged there too.
-  const Box reached = local.grown(depth());
-  const double reach = reached.half_diagonal();
+PolytopeKernel PolytopeKernel::narrow(const TurnedBox& local) const {
+  // A warped point lies up to the relief's depth outside of the box: planes are judged there too.
+  const double around = depth() + 1e-6;
+  const double reach = local.radius + around;
   const double apart =
-      rounding_ + 1e-5 + 2.0 * rounding_slack(reached);  // Beyond this the fold weight is 0 to the bit.
+      rounding_ + 1e-5 + 3.0 * rounding_slack(local);  // Beyond this the fold weight is 0 to the bit.
 
-  const PlanesOverBox h(planes_, reached);
+  const PlanesOverBox h(planes_, local, around);
   const double inverse = inverse_of(rounding_);
   std::vector<std::uint32_t> kept{0};
   std::vector<double> largest_weights{0.0};
@@ -306,7 +312,7 @@ std::optional<Box> PolytopeKernel::support() const noexcept {
       }
     }
   if (box.empty() || largest_coordinate_sum(box) > 0.1 * kFar) return std::nullopt;
-  return box.grown(rounding_slack(box));
+  return box.grown(rounding_slack(TurnedBox(box)));
 }
 
 RoundedPolytope::RoundedPolytope(PolytopeKernel kernel, const Vec3& centre)
@@ -339,10 +345,10 @@ void RoundedPolytope::values(const Points& points, std::span<double> values, std
 
 double RoundedPolytope::lipschitz() const noexcept { return kernel_.lipschitz(); }
 
-Interval RoundedPolytope::bound(const Box& box) const noexcept { return kernel_.bound(box.moved(-centre_)); }
+Interval RoundedPolytope::bound(const Box& box) const noexcept { return kernel_.bound(TurnedBox(box.moved(-centre_))); }
 
 FieldPtr RoundedPolytope::narrow(const Box& box) const {
-  return std::make_shared<RoundedPolytope>(kernel_.narrow(box.moved(-centre_)), centre_);
+  return std::make_shared<RoundedPolytope>(kernel_.narrow(TurnedBox(box.moved(-centre_))), centre_);
 }
 
 std::optional<Box> RoundedPolytope::support() const noexcept {

@@ -135,6 +135,12 @@ PatchSample evaluate_bicubic(const Patch& p, double u, double v) noexcept {
           y.derivative(north, south, north_y, south_y)};
 }
 
+double bicubic_value(const Patch& p, double u, double v) noexcept {
+  const Hermite x(u), y(v);
+  return y.value(x.value(p.nw.h, p.ne.h, p.nw.hx, p.ne.hx), x.value(p.sw.h, p.se.h, p.sw.hx, p.se.hx),
+                 x.value(p.nw.hy, p.ne.hy, p.nw.hxy, p.ne.hxy), x.value(p.sw.hy, p.se.hy, p.sw.hxy, p.se.hxy));
+}
+
 PatchSample evaluate_bilinear(const Patch& p, double u, double v) noexcept {
   const double nw = p.nw.h, ne = p.ne.h, sw = p.sw.h, se = p.se.h;
   const double north = nw + u * (ne - nw);

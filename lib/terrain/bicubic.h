@@ -41,6 +41,8 @@ struct PatchBound {
 
 /// u, v in [0, 1] run east and south from the patch's north-western node.
 [[nodiscard]] PatchSample evaluate_bicubic(const Patch& patch, double u, double v) noexcept;
+/// evaluate_bicubic(patch, u, v).h, to the bit.
+[[nodiscard]] double bicubic_value(const Patch& patch, double u, double v) noexcept;
 [[nodiscard]] PatchSample evaluate_bilinear(const Patch& patch, double u, double v) noexcept;
 
 /// Method: a patch and its derivatives lie in the convex hull of their Bézier control points (Farin 2002, chapter 15).

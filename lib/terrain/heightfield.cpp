@@ -25,6 +25,18 @@ constexpr double kSmallestCell = 1e-6;     // Metres.
 constexpr double kRoundingSlack = 1e-12;   // Relative; evaluation in doubles errs by some 1e-15 of the largest term.
 constexpr double kAbsoluteSlack = 1e-9;    // Metres.
 
+/// out[i] = evaluate(x[i], y[i]). Where positions come back after a number of others, as in the layers of a lattice, what
+/// was computed is taken again, so that results do not depend on the batch.
+template <class Value, class Evaluate>
+void each_position(std::span<const double> x, std::span<const double> y, std::span<Value> out, Evaluate&& evaluate) {
+  std::size_t period = 1;
+  while (period < x.size() && (x[period] != x[0] || y[period] != y[0])) ++period;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const bool again = i >= period && x[i] == x[i - period] && y[i] == y[i - period];
+    out[i] = again ? out[i - period] : evaluate(x[i], y[i]);
+  }
+}
+
 // Nodes that interpolate a map of samples over the patches of a grid, with their bounds.
 struct Surface {
   std::vector<Node> nodes;
@@ -119,6 +131,11 @@ struct Heightfield::Data {
     const Patch p = patch(ground, at);
     return in_map(smooth ? evaluate_bicubic(p, at.u, at.v) : evaluate_bilinear(p, at.u, at.v), x, y);
   }
+  [[nodiscard]] double height_at(double x, double y) const noexcept {
+    const Place at = place(x, y);
+    const Patch p = patch(ground, at);
+    return smooth ? terrain::bicubic_value(p, at.u, at.v) : evaluate_bilinear(p, at.u, at.v).h;
+  }
   [[nodiscard]] Sample hole_at(double x, double y) const noexcept {
     const Place at = place(x, y);
     return in_map(evaluate_bilinear(patch(holes, at), at.u, at.v), x, y);
@@ -165,6 +182,14 @@ Heightfield::Heightfield(ElevationGrid grid, Interpolation interpolation) {
 }
 
 Heightfield::Sample Heightfield::at(double x, double y) const noexcept { return data_->ground_at(x, y); }
+
+void Heightfield::at(std::span<const double> x, std::span<const double> y, std::span<Sample> samples) const noexcept {
+  each_position(x, y, samples, [this](double at_x, double at_y) { return data_->ground_at(at_x, at_y); });
+}
+
+void Heightfield::heights(std::span<const double> x, std::span<const double> y, std::span<double> h) const noexcept {
+  each_position(x, y, h, [this](double at_x, double at_y) { return data_->height_at(at_x, at_y); });
+}
 
 Interval Heightfield::height_bound(const Vec2& a, const Vec2& b) const noexcept {
   const Data::Rectangle r = data_->inside(a, b);

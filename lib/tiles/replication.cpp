@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -15,18 +16,11 @@
 namespace outcrop {
 namespace {
 
-constexpr std::size_t kChunk = 256;      // Points handled at a time by narrowed nodes.
-constexpr std::size_t kWorthAList = 200; // Boxes with more candidate blocks are not narrowed: their children will be.
-constexpr double kWorthAsking = 300.0;   // Boxes that may touch more blocks than this are not looked at block by block.
+constexpr std::size_t kChunk = 768;      // Points handled at a time by narrowed nodes: a mesher's brick of 9³.
+constexpr std::size_t kWorthAList = 600; // Boxes with more blocks are not narrowed: their children will be.
 constexpr double kFloatSlack = 2e-5;     // Metres; rounding of a block's float coordinates, some 10 m at 24 bits.
 
 int floor_div(int a, int b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
-
-std::uint64_t cell_key(const IVec3& cell) {
-  constexpr std::uint64_t kMask = (1ull << 21) - 1;
-  return (static_cast<std::uint64_t>(cell.x) & kMask) | ((static_cast<std::uint64_t>(cell.y) & kMask) << 21) |
-         ((static_cast<std::uint64_t>(cell.z) & kMask) << 42);
-}
 
 IVec3 cell_of(const Vec3& p, double side) { return IVec3(glm::floor(p / side)); }
 
@@ -48,23 +42,46 @@ Box support_box(const Box& bounds, double inradius, double t) {
   return {bounds.lo * scale, bounds.hi * scale};
 }
 
-Box relative(const Box& box, const Vec3& position) { return box.moved(-position).grown(kFloatSlack); }
-
 }  // namespace
 
-/// What a Replication narrows to: an explicit list of blocks.
+/// What a Replication narrows to: an explicit list of blocks. In large boxes they are the root's; in small ones each is
+/// narrowed.
 class PlacedBlocks final : public Field {
  public:
-  using Item = PlacedKernel;  ///< Position in the tile frame, without wrapping.
+  struct Item {
+    std::uint32_t block;
+    Vec3 position;  ///< Of the block's centre, tile frame without wrapping.
+  };
 
   /// @param growth  Of all blocks, where there is no crack floor to ask.
-  PlacedBlocks(std::shared_ptr<const Replication> root, FieldPtr crack_floor, double growth, std::vector<Item> items)
-      : root_(std::move(root)), crack_floor_(std::move(crack_floor)), growth_(growth), items_(std::move(items)) {
-    for (const Item& item : items_) lipschitz_ = std::max(lipschitz_, item.kernel.lipschitz());
+  PlacedBlocks(std::shared_ptr<const Replication> root, FieldPtr crack_floor, double growth, std::vector<Item> items,
+               std::vector<PolytopeKernel> narrowed)
+      : root_(std::move(root)),
+        crack_floor_(std::move(crack_floor)),
+        growth_(growth),
+        items_(std::move(items)),
+        narrowed_(std::move(narrowed)) {
+    for (std::size_t k = 0; k < items_.size(); ++k) {
+      const PolytopeKernel& kernel = narrowed_.empty() ? root_->shapes_[items_[k].block].kernel : narrowed_[k];
+      placed_.push_back({&kernel, items_[k].position});
+      lipschitz_ = std::max(lipschitz_, kernel.lipschitz());
+    }
     if (crack_floor_ && !items_.empty()) lipschitz_ += root_->options_.closure_slope * crack_floor_->lipschitz();
   }
 
   void values(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept override {
+    std::ranges::fill(values, root_->options_.cap);
+    std::ranges::fill(gradients, Vec3(0.0));
+    lower(points, values, gradients);
+  }
+
+  void lower(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept override {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (values[i] <= root_->options_.cap) continue;
+      values[i] = root_->options_.cap;
+      if (!gradients.empty()) gradients[i] = Vec3(0.0);
+    }
+    if (items_.empty()) return;
     for (std::size_t first = 0; first < points.size(); first += kChunk) {
       const std::size_t count = std::min(kChunk, points.size() - first);
       chunk(points.subspan(first, count), values.subspan(first, count),
@@ -76,30 +93,56 @@ class PlacedBlocks final : public Field {
 
   [[nodiscard]] Interval bound(const Box& box) const noexcept override {
     const Box tile_box = root_->to_tile(box);
-    Interval result{root_->options_.cap, root_->options_.cap};
+    const double cap = root_->options_.cap;
+    Interval result{cap, cap};
     if (items_.empty()) return result;
+    if (root_->large(box)) {
+      const bool any = std::ranges::any_of(items_, [&](const Item& item) { return reaches(item, tile_box); });
+      return any ? Interval{-root_->deepest_, cap} : result;
+    }
     const Interval growth = growth_bound(box);
-    for (const Item& item : items_) result = outcrop::min(result, item_bound(item, tile_box, growth));
+    const TurnedBox turned = root_->turned(box);
+    for (std::size_t k = 0; k < items_.size(); ++k)
+      if (reaches(items_[k], tile_box)) result = outcrop::min(result, bound_of(k, turned, growth));
     return result;
   }
 
   [[nodiscard]] FieldPtr narrow(const Box& box) const override {
     if (items_.empty()) return shared_from_this();
     const Box tile_box = root_->to_tile(box);
-    const Interval growth = growth_bound(box);
-    std::vector<Interval> bounds;
-    double smallest = root_->options_.cap;
-    for (const Item& item : items_) {
-      bounds.push_back(item_bound(item, tile_box, growth));
-      smallest = std::min(smallest, bounds.back().hi);
-    }
     std::vector<Item> kept;
-    for (std::size_t i = 0; i < items_.size(); ++i)
-      if (bounds[i].lo <= smallest)
-        kept.push_back({items_[i].kernel.narrow(relative(tile_box, items_[i].position)), items_[i].position});
+    if (root_->large(box)) {
+      std::ranges::copy_if(items_, std::back_inserter(kept), [&](const Item& i) { return reaches(i, tile_box); });
+      return kept.size() == items_.size()
+                 ? shared_from_this()
+                 : std::make_shared<PlacedBlocks>(root_, crack_floor_, growth_, std::move(kept),
+                                                    std::vector<PolytopeKernel>{});
+    }
+    const Interval growth = growth_bound(box);
+    const TurnedBox turned = root_->turned(box);
+    struct Candidate {
+      std::size_t item;
+      double lowest;
+    };
+    std::vector<Candidate> candidates;
+    double smallest = root_->options_.cap;
+    for (std::size_t k = 0; k < items_.size(); ++k) {
+      if (!reaches(items_[k], tile_box)) continue;
+      const Interval bound = bound_of(k, turned, growth);
+      if (bound.lo > smallest) continue;
+      candidates.push_back({k, bound.lo});
+      smallest = std::min(smallest, bound.hi);
+    }
+    std::vector<PolytopeKernel> narrowed;
+    for (const Candidate& c : candidates) {
+      if (c.lowest > smallest) continue;
+      kept.push_back(items_[c.item]);
+      narrowed.push_back(placed_[c.item].kernel->narrow(turned.moved(-kept.back().position)));
+    }
     // Above the floor nothing grows, far below everything does by `closure`: then nobody asks the floor.
     const bool asks = crack_floor_ && !kept.empty() && growth.lo < growth.hi;
-    return std::make_shared<PlacedBlocks>(root_, asks ? crack_floor_->narrow(box) : nullptr, growth.lo, std::move(kept));
+    return std::make_shared<PlacedBlocks>(root_, asks ? crack_floor_->narrow(box) : nullptr, growth.lo, std::move(kept),
+                                          std::move(narrowed));
   }
 
   void labels(const Points& points, std::span<Label> labels) const noexcept override { root_->labels(points, labels); }
@@ -112,8 +155,13 @@ class PlacedBlocks final : public Field {
     return {std::clamp(-o.closure_slope * floor.hi, 0.0, o.closure), std::clamp(-o.closure_slope * floor.lo, 0.0, o.closure)};
   }
 
-  [[nodiscard]] Interval item_bound(const Item& item, const Box& tile_box, const Interval& growth) const noexcept {
-    const Interval b = item.kernel.bound(relative(tile_box, item.position));
+  /// Outside its support a block's value is at least the cap.
+  [[nodiscard]] bool reaches(const Item& item, const Box& tile_box) const noexcept {
+    return root_->shapes_[item.block].support.moved(item.position).overlaps(tile_box);
+  }
+
+  [[nodiscard]] Interval bound_of(std::size_t k, const TurnedBox& turned, const Interval& growth) const noexcept {
+    const Interval b = placed_[k].kernel->bound(turned.moved(-items_[k].position));
     const double swelling = root_->options_.swelling;
     return {b.lo - swelling - growth.hi, b.hi - swelling - growth.lo};
   }
@@ -122,11 +170,7 @@ class PlacedBlocks final : public Field {
     const ReplicationOptions& o = root_->options_;
     const std::size_t n = points.size();
     const bool wants_gradients = !gradients.empty();
-    std::ranges::fill(values, o.cap);
-    std::ranges::fill(gradients, Vec3(0.0));
-    if (items_.empty()) return;
-
-    std::array<double, kChunk> x, y, z, growth;
+    std::array<double, kChunk> x, y, z, growth, before;
     std::array<Vec3, kChunk> growth_gradients;
     for (std::size_t i = 0; i < n; ++i) {
       const Vec3 p = root_->to_tile(points[i]);
@@ -143,10 +187,11 @@ class PlacedBlocks final : public Field {
         if (wants_gradients) growth_gradients[i] *= raw > 0.0 && raw < o.closure ? -o.closure_slope : 0.0;
       }
     }
-    lower_to_union(items_, {{x.data(), n}, {y.data(), n}, {z.data(), n}}, std::span(growth).first(n), values,
+    if (wants_gradients) std::ranges::copy(values, before.begin());
+    lower_to_union(placed_, {{x.data(), n}, {y.data(), n}, {z.data(), n}}, std::span(growth).first(n), values,
                    gradients);
     for (std::size_t i = 0; i < gradients.size(); ++i) {
-      if (values[i] == o.cap) continue;
+      if (values[i] == before[i]) continue;
       gradients[i] = root_->rock_.world_from_tile * gradients[i];
       if (crack_floor_) gradients[i] -= growth_gradients[i];
     }
@@ -156,6 +201,8 @@ class PlacedBlocks final : public Field {
   FieldPtr crack_floor_;
   double growth_;
   std::vector<Item> items_;
+  std::vector<PolytopeKernel> narrowed_;  ///< One an item, or none: the root's.
+  std::vector<PlacedKernel> placed_;
   double lipschitz_ = 1.0;
 };
 
@@ -182,9 +229,13 @@ Replication::Replication(Rock rock, FieldPtr terrain, ReplicationOptions options
                        .inradius = block.inradius});
   }
   // A block is 1-Lipschitz before its warp, which only adds: no value lies deeper than half of its smallest extent.
-  for (const Shape& shape : shapes_) supports_ = hull(supports_, shape.support);
+  for (const Shape& shape : shapes_) {
+    supports_ = hull(supports_, shape.support);
+    supports_in_tile_.push_back(shape.support.moved(shape.centre));
+  }
   for (const Block& block : rock_.tile.blocks) {
     const Vec3 size = block.bounds.size();
+    half_block_ += block.bounds.half_diagonal() / static_cast<double>(rock_.tile.blocks.size());
     deepest_ = std::max(deepest_, 0.5 * std::min({size.x, size.y, size.z}));
   }
   deepest_ += options_.swelling + options_.closure;
@@ -195,6 +246,12 @@ Replication::Replication(Rock rock, FieldPtr terrain, ReplicationOptions options
 
 Box Replication::to_tile(const Box& world) const noexcept {
   return rotated(tile_from_world_, world.moved(-rock_.origin)).grown(1e-9);
+}
+
+TurnedBox Replication::turned(const Box& world) const noexcept {
+  const Vec3 half = 0.5 * world.size() + kFloatSlack;
+  return {to_tile(world.centre()),
+          {tile_from_world_[0] * half.x, tile_from_world_[1] * half.y, tile_from_world_[2] * half.z}};
 }
 
 void Replication::bake_lists() {
@@ -250,12 +307,25 @@ void Replication::place_blocks(const Field& terrain, const Task& task) {
         return present_blocks(cells[i], terrain);
       },
       task);
+  first_cell_ = lo;
+  cell_count_ = hi - lo + 1;
+  presence_of_.assign(cells.size(), 0);
   for (std::size_t i = 0; i < cells.size(); ++i) {
     std::size_t count = 0;
-    for (const std::uint64_t word : masks[i]) count += static_cast<std::size_t>(__builtin_popcountll(word));
-    if (count > 0) present_.emplace(cell_key(cells[i]), masks[i]);
+    for (const std::uint64_t word : masks[i]) count += static_cast<std::size_t>(std::popcount(word));
+    if (count == 0) continue;
+    presence_of_[i] = static_cast<std::uint32_t>(presence_.size());
+    presence_.insert(presence_.end(), masks[i].begin(), masks[i].end());
     block_count_ += count;
   }
+}
+
+const std::uint64_t* Replication::presence(const IVec3& cell) const noexcept {
+  const IVec3 i = cell - first_cell_;
+  if (i.x < 0 || i.y < 0 || i.z < 0 || i.x >= cell_count_.x || i.y >= cell_count_.y || i.z >= cell_count_.z)
+    return nullptr;
+  const std::uint32_t first = presence_of_[(static_cast<std::size_t>(i.z) * cell_count_.y + i.y) * cell_count_.x + i.x];
+  return first == 0 ? nullptr : &presence_[first];
 }
 
 std::vector<std::uint64_t> Replication::present_blocks(const IVec3& cell, const Field& terrain) const {
@@ -295,8 +365,8 @@ std::vector<std::uint64_t> Replication::present_blocks(const IVec3& cell, const 
 }
 
 bool Replication::block_present(const IVec3& cell, std::size_t block) const noexcept {
-  const auto found = present_.find(cell_key(cell));
-  return found != present_.end() && ((found->second[block / 64] >> (block % 64)) & 1) != 0;
+  const std::uint64_t* const present = presence(cell);
+  return present && ((present[block / 64] >> (block % 64)) & 1) != 0;
 }
 
 std::size_t Replication::tile_bytes() const noexcept {
@@ -308,51 +378,24 @@ std::size_t Replication::tile_bytes() const noexcept {
 template <class Visit>
 void Replication::visit_blocks(const Box& tile_box, Visit&& visit) const {
   const double side = rock_.tile.side;
-  const double voxel = side / voxels_;
-  // Owners of blocks whose supports can reach the box, with their masks looked up once.
-  const IVec3 owner_lo(glm::floor((tile_box.lo - supports_.hi) / side));
-  const IVec3 owner_hi(glm::floor((tile_box.hi - supports_.lo) / side));
-  const IVec3 count = owner_hi - owner_lo + 1;
-  const std::size_t owners = static_cast<std::size_t>(count.x) * count.y * count.z;
+  // Owners of blocks whose supports can reach the box. In doubles first: a box may be far away.
+  const Vec3 lo = glm::max(glm::floor((tile_box.lo - supports_.hi) / side), Vec3(first_cell_));
+  const Vec3 hi = glm::min(glm::floor((tile_box.hi - supports_.lo) / side), Vec3(first_cell_ + cell_count_ - 1));
+  if (glm::any(glm::greaterThan(lo, hi))) return;
   const std::size_t words = (shapes_.size() + 63) / 64;
-  std::vector<const std::vector<std::uint64_t>*> masks(owners, nullptr);
-  bool any = false;
-  for (std::size_t i = 0; i < owners; ++i) {
-    const int n = static_cast<int>(i);
-    const IVec3 owner = owner_lo + IVec3(n % count.x, n / count.x % count.y, n / (count.x * count.y));
-    const auto found = present_.find(cell_key(owner));
-    if (found != present_.end()) masks[i] = &found->second, any = true;
-  }
-  if (!any) return;
-
-  std::vector<std::uint64_t> candidates(owners * words, 0);
-  const IVec3 lo(glm::floor(tile_box.lo / voxel));
-  const IVec3 hi(glm::floor(tile_box.hi / voxel));
-  for (int z = lo.z; z <= hi.z; ++z)
-    for (int y = lo.y; y <= hi.y; ++y)
-      for (int x = lo.x; x <= hi.x; ++x) {
-        const IVec3 cell(floor_div(x, voxels_), floor_div(y, voxels_), floor_div(z, voxels_));
-        const IVec3 v = IVec3(x, y, z) - cell * voxels_;
-        const std::size_t index = (static_cast<std::size_t>(v.z) * voxels_ + v.y) * voxels_ + v.x;
-        for (std::uint32_t e = first_[index]; e < first_[index + 1]; ++e) {
-          const Entry& entry = entries_[e];
-          const IVec3 owner = cell + IVec3(entry.dx, entry.dy, entry.dz) - owner_lo;
-          if (glm::any(glm::lessThan(owner, IVec3(0))) || glm::any(glm::greaterThanEqual(owner, count))) continue;
-          const std::size_t o = (static_cast<std::size_t>(owner.z) * count.y + owner.y) * count.x + owner.x;
-          candidates[o * words + entry.block / 64] |= 1ull << (entry.block % 64);
-        }
+  for (int z = static_cast<int>(lo.z); z <= static_cast<int>(hi.z); ++z)
+    for (int y = static_cast<int>(lo.y); y <= static_cast<int>(hi.y); ++y)
+      for (int x = static_cast<int>(lo.x); x <= static_cast<int>(hi.x); ++x) {
+        const std::uint64_t* const present = presence({x, y, z});
+        if (!present) continue;
+        const Vec3 corner = Vec3(x, y, z) * side;
+        const Box local = tile_box.moved(-corner).grown(kFloatSlack);
+        for (std::size_t w = 0; w < words; ++w)
+          for (std::uint64_t bits = present[w]; bits != 0; bits &= bits - 1) {
+            const auto block = static_cast<std::uint32_t>(64 * w + static_cast<std::size_t>(std::countr_zero(bits)));
+            if (supports_in_tile_[block].overlaps(local) && !visit(block, corner + shapes_[block].centre)) return;
+          }
       }
-  for (std::size_t o = 0; o < owners; ++o) {
-    if (!masks[o]) continue;
-    const int n = static_cast<int>(o);
-    const Vec3 corner = Vec3(owner_lo + IVec3(n % count.x, n / count.x % count.y, n / (count.x * count.y))) * side;
-    for (std::size_t w = 0; w < words; ++w)
-      for (std::uint64_t bits = candidates[o * words + w] & (*masks[o])[w]; bits != 0; bits &= bits - 1) {
-        const auto block = static_cast<std::uint32_t>(64 * w + static_cast<std::size_t>(__builtin_ctzll(bits)));
-        const Vec3 position = corner + shapes_[block].centre;
-        if (shapes_[block].support.moved(position).overlaps(tile_box)) visit(block, position);
-      }
-  }
 }
 
 void Replication::values(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept {
@@ -399,43 +442,31 @@ void Replication::values(const Points& points, std::span<double> values, std::sp
 
 double Replication::lipschitz() const noexcept { return lipschitz_; }
 
-double Replication::blocks_about(const Box& tile_box) const noexcept {
-  const Vec3 reach = (tile_box.size() + 0.5 * supports_.size()) / rock_.tile.side;
-  return reach.x * reach.y * reach.z * static_cast<double>(shapes_.size());
-}
-
-Interval Replication::growth_bound(const Box& box) const noexcept {
-  if (!options_.crack_floor) return {0.0, 0.0};
-  const Interval floor = options_.crack_floor->bound(box);
-  return {std::clamp(-options_.closure_slope * floor.hi, 0.0, options_.closure),
-          std::clamp(-options_.closure_slope * floor.lo, 0.0, options_.closure)};
-}
-
-Interval Replication::block_bound(const Shape& shape, const Vec3& position, const Box& tile_box,
-                                  const Interval& growth) const noexcept {
-  const Interval b = shape.kernel.bound(relative(tile_box, position));
-  return {b.lo - options_.swelling - growth.hi, b.hi - options_.swelling - growth.lo};
+std::shared_ptr<const PlacedBlocks> Replication::blocks_in(const Box& box, std::size_t most) const {
+  std::vector<PlacedBlocks::Item> items;
+  visit_blocks(to_tile(box), [&](std::uint32_t block, const Vec3& position) {
+    items.push_back({block, position});
+    return items.size() <= most;
+  });
+  if (items.size() > most) return nullptr;
+  return std::make_shared<PlacedBlocks>(std::static_pointer_cast<const Replication>(shared_from_this()),
+                                        options_.crack_floor, 0.0, std::move(items), std::vector<PolytopeKernel>{});
 }
 
 Interval Replication::bound(const Box& box) const noexcept {
-  const Box tile_box = to_tile(box);
+  if (!large(box)) return blocks_in(box, shapes_.size() * 64)->bound(box);
   Interval result{options_.cap, options_.cap};
-  if (blocks_about(tile_box) > kWorthAsking) return {-deepest_, options_.cap};
-  const Interval growth = growth_bound(box);
-  visit_blocks(tile_box, [&](std::uint32_t block, const Vec3& position) {
-    result = outcrop::min(result, block_bound(shapes_[block], position, tile_box, growth));
+  visit_blocks(to_tile(box), [&](std::uint32_t, const Vec3&) {
+    result.lo = -deepest_;
+    return false;
   });
   return result;
 }
 
 FieldPtr Replication::narrow(const Box& box) const {
-  const Box tile_box = to_tile(box);
-  if (blocks_about(tile_box) > kWorthAsking) return shared_from_this();
-  std::vector<PlacedBlocks::Item> items;
-  visit_blocks(tile_box, [&](std::uint32_t block, const Vec3& position) { items.push_back({shapes_[block].kernel, position}); });
-  if (items.size() > kWorthAList) return shared_from_this();
-  const auto root = std::static_pointer_cast<const Replication>(shared_from_this());
-  return std::make_shared<PlacedBlocks>(root, options_.crack_floor, 0.0, std::move(items))->narrow(box);
+  const std::shared_ptr<const PlacedBlocks> blocks = blocks_in(box, kWorthAList);
+  if (!blocks) return shared_from_this();
+  return large(box) ? blocks : blocks->narrow(box);
 }
 
 void Replication::labels(const Points&, std::span<Label> labels) const noexcept {

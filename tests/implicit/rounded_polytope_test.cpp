@@ -129,16 +129,16 @@ TEST(RoundedPolytope, LooksItsReliefUpByTriplanarProjection) {
 
 TEST(RoundedPolytope, NarrowsToTheFewPlanesThatTouchASmallBox) {
   const PolytopeKernel kernel(test::cube_planes(2.0), kRounding, {}, Vec3(0.0));
-  EXPECT_EQ(kernel.narrow({Vec3(1.9, -0.1, -0.1), Vec3(2.1, 0.1, 0.1)}).plane_count(), 1u);
-  EXPECT_EQ(kernel.narrow({Vec3(1.9, 1.9, -0.1), Vec3(2.1, 2.1, 0.1)}).plane_count(), 2u);
-  EXPECT_EQ(kernel.narrow({Vec3(1.9), Vec3(2.1)}).plane_count(), 3u);
+  EXPECT_EQ(kernel.narrow(TurnedBox({Vec3(1.9, -0.1, -0.1), Vec3(2.1, 0.1, 0.1)})).plane_count(), 1u);
+  EXPECT_EQ(kernel.narrow(TurnedBox({Vec3(1.9, 1.9, -0.1), Vec3(2.1, 2.1, 0.1)})).plane_count(), 2u);
+  EXPECT_EQ(kernel.narrow(TurnedBox({Vec3(1.9), Vec3(2.1)})).plane_count(), 3u);
 }
 
 TEST(RoundedPolytope, HasASmallLocalLipschitzConstantOnAFaceAndALargerOneAtAnEdge) {
   const Warp warp{test::noise_relief(4, 16, 16, 4.0), 0.05};
   const PolytopeKernel kernel(test::cube_planes(2.0), kRounding, warp, Vec3(0.0));
-  const double face = kernel.narrow({Vec3(1.9, -0.1, -0.1), Vec3(2.1, 0.1, 0.1)}).lipschitz();
-  const double edge = kernel.narrow({Vec3(1.9, 1.9, -0.1), Vec3(2.1, 2.1, 0.1)}).lipschitz();
+  const double face = kernel.narrow(TurnedBox({Vec3(1.9, -0.1, -0.1), Vec3(2.1, 0.1, 0.1)})).lipschitz();
+  const double edge = kernel.narrow(TurnedBox({Vec3(1.9, 1.9, -0.1), Vec3(2.1, 2.1, 0.1)})).lipschitz();
   EXPECT_NEAR(face, 1.0 + warp.amplitude * warp.relief->slope(), 1e-9);
   EXPECT_GT(edge, face);
   EXPECT_GT(kernel.lipschitz(), edge);

@@ -48,6 +48,12 @@ class Field : public std::enable_shared_from_this<Field> {
   /// `values` has points.size() elements, `gradients` as many or none. Thread-safe.
   virtual void values(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept = 0;
 
+  /// values[i] = min(values[i], f(points[i])) and, unless `gradients` is empty, gradients[i] = ∇f(points[i]) where that
+  /// lowers the value. Default: asks `values`.
+  ///
+  /// For a field that can be sure to lie above what it is given without knowing by how much: unions of many parts.
+  virtual void lower(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept;
+
   /// L with |f(p) − f(q)| ≤ L |p − q| for all p, q where the field is used (of a narrowed field: in its box).
   [[nodiscard]] virtual double lipschitz() const noexcept = 0;
 

@@ -9,10 +9,10 @@
 
 namespace outcrop {
 
-/// A polytope and where its centre stands.
+/// A polytope, borrowed, and where its centre stands.
 struct PlacedKernel {
-  PolytopeKernel kernel;
-  Vec3 position{0.0};
+  const PolytopeKernel* kernel;
+  Vec3 position;
 };
 
 /// values[i] = min(values[i], b_k(p_i − position_k) − growth[i] over the polytopes k); where that lowers a value,
@@ -27,16 +27,18 @@ void lower_to_union(std::span<const PlacedKernel> polytopes, const Points& point
 /// The union of rounded polytopes, as union_of makes it where all its fields are RoundedPolytopes.
 class PolytopeUnion final : public Field {
  public:
-  /// @throws ParameterError without polytopes.
-  explicit PolytopeUnion(std::vector<PlacedKernel> polytopes);
+  /// @param kernels, positions  As many of each, at least 1.
+  PolytopeUnion(std::vector<PolytopeKernel> kernels, std::span<const Vec3> positions);
 
   void values(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept override;
+  void lower(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept override;
   [[nodiscard]] double lipschitz() const noexcept override { return lipschitz_; }
   [[nodiscard]] Interval bound(const Box& box) const noexcept override;
   [[nodiscard]] FieldPtr narrow(const Box& box) const override;
   [[nodiscard]] std::optional<Box> support() const noexcept override;
 
  private:
+  std::vector<PolytopeKernel> kernels_;
   std::vector<PlacedKernel> polytopes_;
   double lipschitz_ = 1.0;
 };

@@ -49,6 +49,21 @@ class PackedPlanes {
   std::vector<float> rows_;  ///< All nx, then all ny, nz and d.
 };
 
+/// A box that may be turned against the axes: centre + half · [−1, 1]³.
+struct TurnedBox {
+  Vec3 centre{0.0};
+  Mat3 half{1.0};       ///< Columns: from the centre to three sides.
+  double radius = 0.0;  ///< Of the ball around it.
+
+  TurnedBox(const Vec3& box_centre, const Mat3& half_edges)
+      : centre(box_centre), half(half_edges), radius(glm::length(half[0] + half[1] + half[2])) {}
+  explicit TurnedBox(const Box& box)
+      : centre(box.centre()), half(0.0), radius(box.half_diagonal()) {
+    for (int axis = 0; axis < 3; ++axis) half[axis][axis] = 0.5 * (box.hi[axis] - box.lo[axis]);
+  }
+  [[nodiscard]] TurnedBox moved(const Vec3& by) const { TurnedBox result = *this; result.centre += by; return result; }
+};
+
 /// Evaluates one rounded polytope: the fold, in the order of `planes`, of
 /// smax(a, b) = max(a, b) + R/6 · max(1 − |a − b|/R, 0)³, then the gradient warp.
 ///
@@ -73,15 +88,15 @@ class PolytopeKernel {
   /// The relief's largest depth: the warp's amplitude, 0 without one.
   [[nodiscard]] double depth() const noexcept { return warp_.active() ? warp_.amplitude : 0.0; }
   /// How far rounding may move a value in the box.
-  [[nodiscard]] double rounding_slack(const Box& local) const noexcept;
+  [[nodiscard]] double rounding_slack(const TurnedBox& local) const noexcept;
 
   /// Contains b over the box (relative to the centre): fold of plane intervals, tightened by the centre value, widened
   /// by the warp's amplitude upwards only (the relief only carves).
-  [[nodiscard]] Interval bound(const Box& local) const noexcept;
+  [[nodiscard]] Interval bound(const TurnedBox& local) const noexcept;
 
   /// The kernel without the planes that cannot be active in the box: equal to the bit there. Its lipschitz() is the
   /// local one of what is left, often far smaller.
-  [[nodiscard]] PolytopeKernel narrow(const Box& local) const;
+  [[nodiscard]] PolytopeKernel narrow(const TurnedBox& local) const;
 
   /// 1 without warp, else 1 + Lip(displacement): see the proof in rounded_polytope.cpp.
   [[nodiscard]] double lipschitz() const noexcept { return lipschitz_; }

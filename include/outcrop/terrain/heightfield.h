@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "outcrop/core/box.h"
@@ -48,6 +49,11 @@ class Heightfield {
   explicit Heightfield(ElevationGrid grid, Interpolation interpolation = Interpolation::Smooth);
 
   [[nodiscard]] Sample at(double x, double y) const noexcept;
+  /// samples[i] = at(x[i], y[i]), to the bit; all three have the same size. Meshers ask for lattices, whose layers
+  /// repeat the same positions: those are evaluated once.
+  void at(std::span<const double> x, std::span<const double> y, std::span<Sample> samples) const noexcept;
+  /// The same without derivatives.
+  void heights(std::span<const double> x, std::span<const double> y, std::span<double> h) const noexcept;
   /// Contains h over [lo, hi]. Cost: O(log) of the rectangle's cells, by a min-max pyramid over patch control points;
   /// within a cell sharpened by the tangent plane and the patch's largest curvature.
   [[nodiscard]] Interval height_bound(const Vec2& lo, const Vec2& hi) const noexcept;

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <unordered_map>
 #include <vector>
 
 #include "outcrop/core/task.h"
@@ -14,6 +13,8 @@
 #include "outcrop/tiles/presence.h"
 
 namespace outcrop {
+
+class PlacedBlocks;
 
 /// A tile and how it stands in the world: p_world = origin + world_from_tile · p_tile; the lattice has period tile.side.
 struct Rock {
@@ -41,8 +42,8 @@ struct ReplicationOptions {
 /// t(p) = min(cap, min over present blocks of b_i(p) − swelling − growth(p)), growth in [0, closure] below the crack floor.
 ///
 /// A block that is missing is not evaluated. Presence is decided once a (cell, block), when the node is built, and held as
-/// one bit each; the tile's lists of blocks a voxel are baked once, whatever the presence. Memory: O(cells with blocks) +
-/// O(blocks · voxels they touch) for the tile. Cost of a value: the one to three blocks whose boxes hold the point.
+/// one bit each; the tile's lists of blocks a voxel are baked once, whatever the presence. Memory: 4 bytes a cell of
+/// the domain, a bit a block in cells with blocks, and O(blocks · voxels they touch) for the tile. Cost of a value: the one to three blocks whose boxes hold the point.
 /// Method: Paris et al. 2020, section 5, with the sign and the presence of docs/decisions/placement.md.
 class Replication final : public Field {
  public:
@@ -80,17 +81,21 @@ class Replication final : public Field {
 
   [[nodiscard]] Vec3 to_tile(const Vec3& world) const noexcept { return tile_from_world_ * (world - rock_.origin); }
   [[nodiscard]] Box to_tile(const Box& world) const noexcept;
+  /// The box itself, turned.
+  [[nodiscard]] TurnedBox turned(const Box& world) const noexcept;
+  /// The present blocks of a box, at most so many; null when there are more.
+  [[nodiscard]] std::shared_ptr<const PlacedBlocks> blocks_in(const Box& box, std::size_t most) const;
   void bake_lists();
   void place_blocks(const Field& terrain, const Task& task);
   [[nodiscard]] std::vector<std::uint64_t> present_blocks(const IVec3& cell, const Field& terrain) const;
-  /// Calls visit(block, owner cell) for each present block whose support may overlap the box, once each.
+  /// One bit a block that is present in the cell; null where none is.
+  [[nodiscard]] const std::uint64_t* presence(const IVec3& cell) const noexcept;
+  /// Calls visit(block, position) for each present block whose support overlaps the box, once each, until it answers
+  /// false.
   template <class Visit>
   void visit_blocks(const Box& tile_box, Visit&& visit) const;
-  /// How many blocks may touch a box, were all present: an estimate from the tile's density.
-  [[nodiscard]] double blocks_about(const Box& tile_box) const noexcept;
-  [[nodiscard]] Interval block_bound(const Shape& shape, const Vec3& position, const Box& tile_box,
-                                     const Interval& growth) const noexcept;
-  [[nodiscard]] Interval growth_bound(const Box& box) const noexcept;
+  /// Is the box larger than most blocks? Then it holds rock and air, and nobody looks at planes.
+  [[nodiscard]] bool large(const Box& box) const noexcept { return box.half_diagonal() > half_block_; }
 
   Rock rock_;
   ReplicationOptions options_;
@@ -99,10 +104,14 @@ class Replication final : public Field {
   int voxels_ = 1;  ///< Per side.
   std::vector<std::uint32_t> first_;
   std::vector<Entry> entries_;
-  std::unordered_map<std::uint64_t, std::vector<std::uint64_t>> present_;  ///< Cell → one bit a block.
+  IVec3 first_cell_{0}, cell_count_{0};      ///< Of the lattice's cells that may hold blocks.
+  std::vector<std::uint32_t> presence_of_;   ///< Where a cell's words begin; 0: no block is present.
+  std::vector<std::uint64_t> presence_{0};   ///< One bit a block.
   std::size_t block_count_ = 0;
+  std::vector<Box> supports_in_tile_;  ///< Of each block.
   Box supports_;          ///< Around all supports, relative to their centres.
   double lipschitz_ = 1.0;
+  double half_block_ = 0.0;  ///< Mean half diagonal of a block's box.
   double deepest_ = 0.0;  ///< No value is below − deepest_.
 };
 
