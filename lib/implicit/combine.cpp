@@ -32,7 +32,7 @@ class FoldField final : public Field {
   void values(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept override {
     if (is_union()) {
       fields_[0]->values(points, values, gradients);
-      for (std::size_t k = 1; k < fields_.size(); ++k) fields_[k]->lower(points, values, gradients);
+      for (std::size_t k = 1; k < fields_.size(); ++k) fields_[k]->between(points, {}, values, gradients);
       return;
     }
     std::array<double, kBlock> other;
@@ -55,9 +55,10 @@ class FoldField final : public Field {
     }
   }
 
-  void lower(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept override {
-    if (!is_union()) return Field::lower(points, values, gradients);
-    for (const FieldPtr& field : fields_) field->lower(points, values, gradients);
+  void between(const Points& points, std::span<const double> floors, std::span<double> values,
+               std::span<Vec3> gradients) const noexcept override {
+    if (!is_union()) return Field::between(points, floors, values, gradients);
+    for (const FieldPtr& field : fields_) field->between(points, floors, values, gradients);
   }
 
   [[nodiscard]] double lipschitz() const noexcept override { return lipschitz_; }
@@ -255,6 +256,10 @@ class Labelled final : public UnaryField {
   Labelled(FieldPtr field, Label label) : UnaryField(std::move(field)), label_(label) {}
   void values(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept override {
     field().values(points, values, gradients);
+  }
+  void between(const Points& points, std::span<const double> floors, std::span<double> values,
+               std::span<Vec3> gradients) const noexcept override {
+    field().between(points, floors, values, gradients);
   }
   [[nodiscard]] Interval bound(const Box& box) const noexcept override { return field().bound(box); }
   [[nodiscard]] std::optional<Box> support() const noexcept override { return field().support(); }

@@ -10,7 +10,8 @@ constexpr double kDifferenceStep = 1e-4;  // Metres; central differences of a Po
 
 }  // namespace
 
-void Field::lower(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept {
+void Field::between(const Points& points, std::span<const double> floors, std::span<double> values,
+                    std::span<Vec3> gradients) const noexcept {
   constexpr std::size_t kChunk = 128;
   std::array<double, kChunk> own;
   std::array<Vec3, kChunk> own_gradients;
@@ -23,6 +24,7 @@ void Field::lower(const Points& points, std::span<double> values, std::span<Vec3
       if (!gradients.empty()) gradients[first + i] = own_gradients[i];
     }
   }
+  for (std::size_t i = 0; i < floors.size(); ++i) values[i] = std::max(floors[i], values[i]);
 }
 
 Interval Field::bound(const Box& box) const noexcept {

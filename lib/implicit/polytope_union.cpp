@@ -35,17 +35,26 @@ void lower(std::size_t n, const float* __restrict fold, double above, const doub
   }
 }
 
-/// One chunk of points before one of the polytopes.
-struct Local {
-  Floats x, y, z;
-
-  Local(const Points& points, const Vec3& centre) noexcept {
-    const std::size_t n = points.size();
-    relative(n, points.x.data(), centre.x, x.data());
-    relative(n, points.y.data(), centre.y, y.data());
-    relative(n, points.z.data(), centre.z, z.data());
+/// The points at which a polytope's value may be below `values` and no higher than `highest`; their number.
+OUTCROP_SIMD_CLONES
+std::size_t choose(std::size_t n, const float* __restrict fold, double slack, const double* __restrict growth,
+                   const double* __restrict highest, const double* __restrict values,
+                   std::uint8_t* __restrict chosen) {
+  std::array<std::uint8_t, kChunk> may;
+  unsigned any = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double lowest = static_cast<double>(fold[i]) - slack - growth[i];
+    may[i] = lowest <= highest[i] && lowest < values[i];
+    any |= may[i];
   }
-};
+  if (any == 0) return 0;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    chosen[count] = static_cast<std::uint8_t>(i);
+    count += may[i];
+  }
+  return count;
+}
 
 Box box_of(const Points& points) noexcept {
   const auto range = [](std::span<const double> values) {
@@ -57,52 +66,58 @@ Box box_of(const Points& points) noexcept {
   return {{x.lo, y.lo, z.lo}, {x.hi, y.hi, z.hi}};
 }
 
-void lower_chunk(std::span<const PlacedKernel> polytopes, const Points& points, const double* growth,
-                 std::span<double> values, std::span<Vec3> gradients) noexcept {
+/// The fold at a chunk of points, and what rounding may add to it.
+struct Folded {
+  Floats value;
+  double slack;
+};
+
+void fold_chunk(const PlacedKernel& polytope, const Points& points, const TurnedBox& box, Folded& out) noexcept {
+  const auto& [kernel, position] = polytope;
+  const std::size_t n = points.size();
+  Floats x, y, z;
+  relative(n, points.x.data(), position.x, x.data());
+  relative(n, points.y.data(), position.y, y.data());
+  relative(n, points.z.data(), position.z, z.data());
+  kernel->folded(n, x.data(), y.data(), z.data(), out.value.data());
+  out.slack = 2.0 * kernel->rounding_slack(box.moved(-position));
+}
+
+void between_chunk(std::span<const PlacedKernel> polytopes, const Points& points, const double* growth,
+                   std::span<const double> floors, std::span<double> values, std::span<Vec3> gradients) noexcept {
   const std::size_t n = points.size();
   const TurnedBox box(box_of(points));
-  std::array<Floats, kRemembered> folds;
-  std::array<double, kRemembered> slacks;
+  std::array<Folded, kRemembered> folds;
   Doubles highest;  // No point's result is above.
   std::copy(values.begin(), values.end(), highest.begin());
   const std::size_t remembered = std::min(polytopes.size(), kRemembered);
   for (std::size_t k = 0; k < remembered; ++k) {
-    const auto& [kernel, position] = polytopes[k];
-    const Local local(points, position);
-    kernel->folded(n, local.x.data(), local.y.data(), local.z.data(), folds[k].data());
-    slacks[k] = 2.0 * kernel->rounding_slack(box.moved(-position));
-    lower(n, folds[k].data(), kernel->depth() + slacks[k], growth, highest.data());
+    fold_chunk(polytopes[k], points, box, folds[k]);
+    lower(n, folds[k].value.data(), polytopes[k].kernel->depth() + folds[k].slack, growth, highest.data());
   }
+  // What is sure to end on the floor need not be known.
+  for (std::size_t i = 0; i < floors.size(); ++i)
+    if (highest[i] <= floors[i]) highest[i] = -std::numeric_limits<double>::infinity();
+  std::array<std::uint8_t, kChunk> chosen;
+  Floats x, y, z, value;
+  std::array<Vec3f, kChunk> gradient;
+  Folded own;
   for (std::size_t k = 0; k < polytopes.size(); ++k) {
     const auto& [kernel, position] = polytopes[k];
-    const Local local(points, position);
-    Floats own;
-    Floats& fold = k < remembered ? folds[k] : own;
-    double slack = 0.0;
-    if (k < remembered) {
-      slack = slacks[k];
-    } else {
-      kernel->folded(n, local.x.data(), local.y.data(), local.z.data(), fold.data());
-      slack = 2.0 * kernel->rounding_slack(box.moved(-position));
-    }
+    if (k >= remembered) fold_chunk(polytopes[k], points, box, own);
+    const Folded& fold = k < remembered ? folds[k] : own;
     if (kernel->depth() == 0.0 && gradients.empty()) {
-      lower(n, fold.data(), 0.0, growth, values.data());
+      lower(n, fold.value.data(), 0.0, growth, values.data());
       continue;
     }
-    std::array<std::uint32_t, kChunk> chosen;
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      chosen[count] = static_cast<std::uint32_t>(i);
-      const double lowest = static_cast<double>(fold[i]) - slack - growth[i];
-      count += lowest <= highest[i] && lowest < values[i];
-    }
+    const std::size_t count =
+        choose(n, fold.value.data(), fold.slack, growth, highest.data(), values.data(), chosen.data());
     if (count == 0) continue;
-    Floats x, y, z, value;
-    std::array<Vec3f, kChunk> gradient;
     for (std::size_t j = 0; j < count; ++j) {
-      x[j] = local.x[chosen[j]];
-      y[j] = local.y[chosen[j]];
-      z[j] = local.z[chosen[j]];
+      const std::size_t i = chosen[j];
+      x[j] = static_cast<float>(points.x[i] - position.x);
+      y[j] = static_cast<float>(points.y[i] - position.y);
+      z[j] = static_cast<float>(points.z[i] - position.z);
     }
     kernel->values(count, x.data(), y.data(), z.data(), value.data(), gradients.empty() ? nullptr : gradient.data());
     for (std::size_t j = 0; j < count; ++j) {
@@ -113,17 +128,20 @@ void lower_chunk(std::span<const PlacedKernel> polytopes, const Points& points, 
       if (!gradients.empty()) gradients[i] = gradient[j];
     }
   }
+  for (std::size_t i = 0; i < floors.size(); ++i)
+    if (values[i] < floors[i] || highest[i] < floors[i]) values[i] = floors[i];
 }
 
 }  // namespace
 
-void lower_to_union(std::span<const PlacedKernel> polytopes, const Points& points, std::span<const double> growth,
-                    std::span<double> values, std::span<Vec3> gradients) noexcept {
+void between_union(std::span<const PlacedKernel> polytopes, const Points& points, std::span<const double> growth,
+                   std::span<const double> floors, std::span<double> values, std::span<Vec3> gradients) noexcept {
   constexpr Doubles kNoGrowth{};
   for (std::size_t first = 0; first < points.size(); first += kChunk) {
     const std::size_t n = std::min(kChunk, points.size() - first);
-    lower_chunk(polytopes, points.subspan(first, n), growth.empty() ? kNoGrowth.data() : &growth[first],
-                values.subspan(first, n), gradients.empty() ? gradients : gradients.subspan(first, n));
+    between_chunk(polytopes, points.subspan(first, n), growth.empty() ? kNoGrowth.data() : &growth[first],
+                  floors.empty() ? floors : floors.subspan(first, n), values.subspan(first, n),
+                  gradients.empty() ? gradients : gradients.subspan(first, n));
   }
 }
 
@@ -139,11 +157,12 @@ PolytopeUnion::PolytopeUnion(std::vector<PolytopeKernel> kernels, std::span<cons
 
 void PolytopeUnion::values(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept {
   std::ranges::fill(values, std::numeric_limits<double>::infinity());
-  lower_to_union(polytopes_, points, {}, values, gradients);
+  between_union(polytopes_, points, {}, {}, values, gradients);
 }
 
-void PolytopeUnion::lower(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept {
-  lower_to_union(polytopes_, points, {}, values, gradients);
+void PolytopeUnion::between(const Points& points, std::span<const double> floors, std::span<double> values,
+                            std::span<Vec3> gradients) const noexcept {
+  between_union(polytopes_, points, {}, floors, values, gradients);
 }
 
 Interval PolytopeUnion::bound(const Box& box) const noexcept {

@@ -72,20 +72,24 @@ class PlacedBlocks final : public Field {
   void values(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept override {
     std::ranges::fill(values, root_->options_.cap);
     std::ranges::fill(gradients, Vec3(0.0));
-    lower(points, values, gradients);
+    between(points, {}, values, gradients);
   }
 
-  void lower(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept override {
+  void between(const Points& points, std::span<const double> floors, std::span<double> values,
+               std::span<Vec3> gradients) const noexcept override {
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (values[i] <= root_->options_.cap) continue;
       values[i] = root_->options_.cap;
       if (!gradients.empty()) gradients[i] = Vec3(0.0);
     }
-    if (items_.empty()) return;
+    if (items_.empty()) {
+      for (std::size_t i = 0; i < floors.size(); ++i) values[i] = std::max(floors[i], values[i]);
+      return;
+    }
     for (std::size_t first = 0; first < points.size(); first += kChunk) {
       const std::size_t count = std::min(kChunk, points.size() - first);
-      chunk(points.subspan(first, count), values.subspan(first, count),
-            gradients.empty() ? gradients : gradients.subspan(first, count));
+      chunk(points.subspan(first, count), floors.empty() ? floors : floors.subspan(first, count),
+            values.subspan(first, count), gradients.empty() ? gradients : gradients.subspan(first, count));
     }
   }
 
@@ -166,7 +170,8 @@ class PlacedBlocks final : public Field {
     return {b.lo - swelling - growth.hi, b.hi - swelling - growth.lo};
   }
 
-  void chunk(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept {
+  void chunk(const Points& points, std::span<const double> floors, std::span<double> values,
+             std::span<Vec3> gradients) const noexcept {
     const ReplicationOptions& o = root_->options_;
     const std::size_t n = points.size();
     const bool wants_gradients = !gradients.empty();
@@ -188,8 +193,8 @@ class PlacedBlocks final : public Field {
       }
     }
     if (wants_gradients) std::ranges::copy(values, before.begin());
-    lower_to_union(placed_, {{x.data(), n}, {y.data(), n}, {z.data(), n}}, std::span(growth).first(n), values,
-                   gradients);
+    between_union(placed_, {{x.data(), n}, {y.data(), n}, {z.data(), n}}, std::span(growth).first(n), floors, values,
+                  gradients);
     for (std::size_t i = 0; i < gradients.size(); ++i) {
       if (values[i] == before[i]) continue;
       gradients[i] = root_->rock_.world_from_tile * gradients[i];

@@ -48,11 +48,13 @@ class Field : public std::enable_shared_from_this<Field> {
   /// `values` has points.size() elements, `gradients` as many or none. Thread-safe.
   virtual void values(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept = 0;
 
-  /// values[i] = min(values[i], f(points[i])) and, unless `gradients` is empty, gradients[i] = ∇f(points[i]) where that
-  /// lowers the value. Default: asks `values`.
+  /// values[i] = max(floors[i], min(values[i], f(points[i]))), with no floors where `floors` is empty; unless `gradients`
+  /// is empty, gradients[i] = ∇f(points[i]) where f is below the value given, and unspecified where the floor holds.
   ///
-  /// For a field that can be sure to lie above what it is given without knowing by how much: unions of many parts.
-  virtual void lower(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept;
+  /// For who knows what matters of f, such as a union that knows another part's value or a mesher that looks for signs:
+  /// many fields are sure to be above or below it at a fraction of the cost of a value. Default: asks `values`.
+  virtual void between(const Points& points, std::span<const double> floors, std::span<double> values,
+                       std::span<Vec3> gradients) const noexcept;
 
   /// L with |f(p) − f(q)| ≤ L |p − q| for all p, q where the field is used (of a narrowed field: in its box).
   [[nodiscard]] virtual double lipschitz() const noexcept = 0;

@@ -15,14 +15,14 @@ struct PlacedKernel {
   Vec3 position;
 };
 
-/// values[i] = min(values[i], b_k(p_i − position_k) − growth[i] over the polytopes k); where that lowers a value,
-/// gradients[i] = ∇b_k of the first polytope that is as low.
+/// Field::between of the union of b_k(p − position_k) − growth over the polytopes k; the gradient is that of the first
+/// polytope that is as low.
 ///
-/// `growth` has points.size() elements ≥ 0, or none; `gradients` as many or none. Equal to the bit to asking each
-/// polytope alone. Cost: the folds of all polytopes at all points, and the relief of those few that can be the lowest:
-/// a fold bounds its carved value from both sides.
-void lower_to_union(std::span<const PlacedKernel> polytopes, const Points& points, std::span<const double> growth,
-                    std::span<double> values, std::span<Vec3> gradients) noexcept;
+/// `growth` has points.size() elements ≥ 0, or none. Equal to the bit to asking each polytope alone. Cost: the folds of
+/// all polytopes at all points, and the relief only of those that can be the lowest and above the floor: a fold bounds
+/// its carved value from both sides.
+void between_union(std::span<const PlacedKernel> polytopes, const Points& points, std::span<const double> growth,
+                   std::span<const double> floors, std::span<double> values, std::span<Vec3> gradients) noexcept;
 
 /// The union of rounded polytopes, as union_of makes it where all its fields are RoundedPolytopes.
 class PolytopeUnion final : public Field {
@@ -31,7 +31,8 @@ class PolytopeUnion final : public Field {
   PolytopeUnion(std::vector<PolytopeKernel> kernels, std::span<const Vec3> positions);
 
   void values(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept override;
-  void lower(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept override;
+  void between(const Points& points, std::span<const double> floors, std::span<double> values,
+               std::span<Vec3> gradients) const noexcept override;
   [[nodiscard]] double lipschitz() const noexcept override { return lipschitz_; }
   [[nodiscard]] Interval bound(const Box& box) const noexcept override;
   [[nodiscard]] FieldPtr narrow(const Box& box) const override;
