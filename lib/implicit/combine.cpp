@@ -26,7 +26,12 @@ class FoldField final : public Field {
         radius_(radius),
         fields_(std::move(fields)),
         material_(std::move(material)) {
-    for (const FieldPtr& field : fields_) lipschitz_ = std::max(lipschitz_, field->lipschitz());
+    // A fold grows with each argument, and by t when all arguments do: it changes by no more than the largest change.
+    for (const FieldPtr& field : fields_) {
+      lipschitz_ = std::max(lipschitz_, field->lipschitz());
+      const Modulus modulus = field->modulus();
+      modulus_ = {std::max(modulus_.slope, modulus.slope), std::max(modulus_.slack, modulus.slack)};
+    }
   }
 
   void values(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept override {
@@ -62,6 +67,7 @@ class FoldField final : public Field {
   }
 
   [[nodiscard]] double lipschitz() const noexcept override { return lipschitz_; }
+  [[nodiscard]] Modulus modulus() const noexcept override { return modulus_; }
 
   [[nodiscard]] Interval bound(const Box& box) const noexcept override {
     Interval fold = oriented(fields_[0]->bound(box));
@@ -184,6 +190,7 @@ class FoldField final : public Field {
   double sign_;
   double radius_;
   double lipschitz_ = 0.0;
+  Modulus modulus_{0.0, 0.0};
   std::vector<FieldPtr> fields_;
   FieldPtr material_;
 };
@@ -286,6 +293,10 @@ class Transformed final : public UnaryField {
     });
     for (double& v : values) v *= scale_;
     for (Vec3& g : gradients) g = world_from_local_ * g;
+  }
+  [[nodiscard]] Modulus modulus() const noexcept override {
+    const Modulus inner = field().modulus();
+    return {inner.slope, scale_ * inner.slack};
   }
   void labels(const Points& points, std::span<Label> labels) const noexcept override {
     for_each_block(points, [&](std::size_t first, const Points& local) {

@@ -16,7 +16,7 @@ constexpr float kSharp = 1e30f;
 constexpr float kShortest = 1e-12f;
 
 constexpr int kWidth = 16;
-constexpr int kFewPoints = 2;  // So many are faster one by one.
+constexpr int kFewPoints = 8;  // So many are faster one by one.
 /// Sixteen floats: one AVX-512 register, two of AVX2, four of SSE2. Lane by lane, so the bits are the same.
 using Vector [[gnu::vector_size(kWidth * sizeof(float))]] = float;
 

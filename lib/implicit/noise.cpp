@@ -88,6 +88,10 @@ class WithNoise final : public UnaryField {
     }
   }
   [[nodiscard]] double lipschitz() const noexcept override { return field().lipschitz() + slope_; }
+  [[nodiscard]] Modulus modulus() const noexcept override {
+    const Modulus inner = field().modulus();
+    return {inner.slope, inner.slack + 2.0 * std::abs(amplitude_)};
+  }
   [[nodiscard]] Interval bound(const Box& box) const noexcept override {
     const Interval inner = field().bound(box);
     const double centre = amplitude_ * sum(box.centre()).value;

@@ -152,6 +152,7 @@ PolytopeUnion::PolytopeUnion(std::vector<PolytopeKernel> kernels, std::span<cons
   for (std::size_t k = 0; k < kernels_.size(); ++k) {
     polytopes_.push_back({&kernels_[k], positions[k]});
     lipschitz_ = std::max(lipschitz_, kernels_[k].lipschitz());
+    depth_ = std::max(depth_, kernels_[k].depth());
   }
 }
 

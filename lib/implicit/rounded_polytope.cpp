@@ -163,7 +163,7 @@ void PolytopeKernel::folded(std::size_t n, const float* x, const float* y, const
   for (std::size_t first = 0; first < n; first += lanes::kLanes) {
     const int count = static_cast<int>(std::min<std::size_t>(lanes::kLanes, n - first));
     lanes::fold_values(view(planes_, rounding_), count, x + first, y + first, z + first, fold);
-    std::copy_n(fold.value, count, out + first);
+    for (int i = 0; i < count; ++i) out[first + i] = fold.value[i];
   }
 }
 

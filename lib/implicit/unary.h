@@ -7,11 +7,12 @@
 
 namespace outcrop {
 
-/// A field made of one other: labels and the Lipschitz constant pass through, narrowing narrows the inner field.
+/// A field made of one other: labels, the Lipschitz constant and the modulus pass through, narrowing narrows the inner field.
 class UnaryField : public Field {
  public:
   explicit UnaryField(FieldPtr field) : field_(std::move(field)) {}
   [[nodiscard]] double lipschitz() const noexcept override { return field_->lipschitz(); }
+  [[nodiscard]] Modulus modulus() const noexcept override { return field_->modulus(); }
   [[nodiscard]] FieldPtr narrow(const Box& box) const override { return narrowed(box); }
   void labels(const Points& points, std::span<Label> labels) const noexcept override { field_->labels(points, labels); }
 

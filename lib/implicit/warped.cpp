@@ -46,6 +46,11 @@ class WarpedField final : public UnaryField {
     }
   }
   [[nodiscard]] double lipschitz() const noexcept override { return lipschitz_; }
+  [[nodiscard]] Modulus modulus() const noexcept override {
+    // Both points are displaced by up to the amplitude.
+    const Modulus inner = field().modulus();
+    return {inner.slope, inner.slack + 2.0 * inner.slope * warp_.amplitude};
+  }
   [[nodiscard]] Interval bound(const Box& box) const noexcept override {
     return field().bound(box.grown(warp_.amplitude + kRoundingReach));
   }

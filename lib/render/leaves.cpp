@@ -76,7 +76,8 @@ std::vector<Box> halves(const Box& box) {
 
 Leaf leaf_of(const Box& grown, FieldPtr field) {
   const double lipschitz = std::max(field->lipschitz(), 1e-3);
-  return {grown, std::move(field), lipschitz};
+  const Modulus modulus = field->modulus();
+  return {grown, std::move(field), lipschitz, {std::max(modulus.slope, 1e-3), modulus.slack}};
 }
 
 /// The parts of a narrowed box that may hold surface, all with the same field: a bound of a small box is far tighter

@@ -15,6 +15,7 @@ struct Leaf {
   Box box;
   FieldPtr field;          ///< Some neighbours share one.
   double lipschitz = 1.0;  ///< Of the narrowed field.
+  Modulus modulus{1.0, 0.0};
 };
 
 /// The leaves of the region's octree: boxes whose bound contains 0, and boxes of rock that touch the region's sides.

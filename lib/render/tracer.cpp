@@ -66,12 +66,12 @@ struct Crossing {
 
 /// Searches one leaf along one ray.
 ///
-/// Sphere tracing, several balls at a time: a value v at t proves the ray free for v / L on both sides of t (as the
-/// overlapping balls of Keinert et al. 2014, section 3.1), and a batch of values costs little more than one. Stretches
+/// Sphere tracing, several balls at a time: a value v at t proves the ray free on both sides of t for v / L, and for what
+/// the modulus says (as the overlapping balls of Keinert et al. 2014, section 3.1), and a batch of values costs little more than one. Stretches
 /// that no ball covers are sampled again, until they are shorter than the smallest step.
 class March {
  public:
-  March(const Leaf& leaf, const Ray& ray, bool any) : leaf_(leaf), ray_(ray), scale_(1.0 / leaf.lipschitz), any_(any) {}
+  March(const Leaf& leaf, const Ray& ray, bool any) : leaf_(leaf), ray_(ray), any_(any) {}
 
   Crossing first(double begin, double end) noexcept {
     Batch batch;
@@ -93,6 +93,11 @@ class March {
     double v[kBatch];
   };
 
+  /// How far around a place with the value v > 0 there is air.
+  [[nodiscard]] double reach(double v) const noexcept {
+    return std::max(v / leaf_.lipschitz, leaf_.modulus.reach(v));
+  }
+
   [[nodiscard]] double smallest_step(double t) const noexcept {
     const double width = ray_.width(t);
     return std::max(steps_ > kStepCap ? width : kSmallestStep * width, kTiniest * std::max(t, 1.0));
@@ -110,7 +115,10 @@ class March {
       const Vec3 p = ray_.at(batch.t[i]);
       x[i] = p.x, y[i] = p.y, z[i] = p.z;
     }
-    leaf_.field->values({{x, n}, {y, n}, {z, n}}, {batch.v, n}, {});
+    // In rock nobody asks how deep.
+    constexpr double kFloors[kBatch] = {};
+    std::fill_n(batch.v, n, kInfinity);
+    leaf_.field->between({{x, n}, {y, n}, {z, n}}, {kFloors, n}, {batch.v, n}, {});
     steps_ += batch.count;
   }
 
@@ -120,11 +128,11 @@ class March {
     for (int i = 0; i < batch.count; ++i) {
       const double t = batch.t[i], v = batch.v[i];
       if (t < air_) continue;
-      const double near = t - std::max(v, 0.0) * scale_;
+      const double near = v > 0.0 ? t - reach(v) : t;
       if (const double found = close(near, depth); found < kInfinity) return found;
       if (v <= 0.0) return any_ ? t : root(std::max(air_, std::min(free_, t)), t);
       air_ = t;
-      free_ = std::max(free_, t + v * scale_);
+      free_ = std::max(free_, t + reach(v));
     }
     return close(end, depth);
   }
@@ -163,7 +171,6 @@ class March {
 
   const Leaf& leaf_;
   const Ray& ray_;
-  double scale_;
   bool any_;           // Any rock will do: nothing is refined.
   double air_ = 0.0;   // The last place known by its value to be air.
   double free_ = 0.0;  // All before it is free.

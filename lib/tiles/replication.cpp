@@ -94,6 +94,10 @@ class PlacedBlocks final : public Field {
   }
 
   [[nodiscard]] double lipschitz() const noexcept override { return lipschitz_; }
+  [[nodiscard]] Modulus modulus() const noexcept override {
+    const double growth = crack_floor_ ? root_->options_.closure_slope * crack_floor_->lipschitz() : 0.0;
+    return {1.0 + growth, root_->rock_.warp.active() ? root_->rock_.warp.amplitude : 0.0};
+  }
 
   [[nodiscard]] Interval bound(const Box& box) const noexcept override {
     const Box tile_box = root_->to_tile(box);
@@ -446,6 +450,11 @@ void Replication::values(const Points& points, std::span<double> values, std::sp
 }
 
 double Replication::lipschitz() const noexcept { return lipschitz_; }
+
+Modulus Replication::modulus() const noexcept {
+  const double growth = options_.crack_floor ? options_.closure_slope * options_.crack_floor->lipschitz() : 0.0;
+  return {1.0 + growth, rock_.warp.active() ? rock_.warp.amplitude : 0.0};
+}
 
 std::shared_ptr<const PlacedBlocks> Replication::blocks_in(const Box& box, std::size_t most) const {
   std::vector<PlacedBlocks::Item> items;

@@ -1,6 +1,7 @@
 /// The one idea of this library: a field that can be narrowed.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -31,6 +32,17 @@ using FieldPtr = std::shared_ptr<const Field>;
 /// Which material stands at a point: an index into the scene's list of materials; 0 where nobody says otherwise.
 using Label = std::uint16_t;
 
+/// |f(p) − f(q)| ≤ slope · |p − q| + slack: how fast a field changes, but for detail no larger than the slack.
+///
+/// A block with a relief is a gentle fold displaced by at most the relief's amplitude, but its Lipschitz constant is that of
+/// the relief's steepest flank: far from the surface the modulus knows much more.
+struct Modulus {
+  double slope, slack;
+
+  /// How far around a place with the value f all is on the same side of the surface.
+  [[nodiscard]] double reach(double f) const noexcept { return (std::abs(f) - slack) / slope; }
+};
+
 /// A scalar function of space: negative in rock, positive in air, metres.
 ///
 /// A heightfield, one block, ten million replicated blocks and a voxel grid are all Fields to the code above them. A
@@ -58,6 +70,9 @@ class Field : public std::enable_shared_from_this<Field> {
 
   /// L with |f(p) − f(q)| ≤ L |p − q| for all p, q where the field is used (of a narrowed field: in its box).
   [[nodiscard]] virtual double lipschitz() const noexcept = 0;
+
+  /// Holds for all points where the field is used (of a narrowed field: in its box). Default: {lipschitz(), 0}.
+  [[nodiscard]] virtual Modulus modulus() const noexcept { return {lipschitz(), 0.0}; }
 
   /// An interval that contains every value in the box. Default: f(centre) ± L · half diagonal.
   [[nodiscard]] virtual Interval bound(const Box& box) const noexcept;

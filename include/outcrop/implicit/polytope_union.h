@@ -34,6 +34,7 @@ class PolytopeUnion final : public Field {
   void between(const Points& points, std::span<const double> floors, std::span<double> values,
                std::span<Vec3> gradients) const noexcept override;
   [[nodiscard]] double lipschitz() const noexcept override { return lipschitz_; }
+  [[nodiscard]] Modulus modulus() const noexcept override { return {1.0, depth_}; }
   [[nodiscard]] Interval bound(const Box& box) const noexcept override;
   [[nodiscard]] FieldPtr narrow(const Box& box) const override;
   [[nodiscard]] std::optional<Box> support() const noexcept override;
@@ -42,6 +43,7 @@ class PolytopeUnion final : public Field {
   std::vector<PolytopeKernel> kernels_;
   std::vector<PlacedKernel> polytopes_;
   double lipschitz_ = 1.0;
+  double depth_ = 0.0;  ///< The largest of the polytopes'.
 };
 
 }  // namespace outcrop

@@ -100,6 +100,9 @@ class PolytopeKernel {
 
   /// 1 without warp, else 1 + Lip(displacement): see the proof in rounded_polytope.cpp.
   [[nodiscard]] double lipschitz() const noexcept { return lipschitz_; }
+  /// {1, depth()}: with c the fold, c ≤ b ≤ c + depth() and c is 1-Lipschitz, so that
+  /// b(p) − b(q) ≤ c(p) + depth() − c(q) ≤ |p − q| + depth().
+  [[nodiscard]] Modulus modulus() const noexcept { return {1.0, depth()}; }
   [[nodiscard]] std::size_t plane_count() const noexcept { return planes_.size(); }
   /// The box around the polytope, relative to the centre; nothing when it is unbounded. Cost: O(planes³).
   [[nodiscard]] std::optional<Box> support() const noexcept;
@@ -125,6 +128,7 @@ class RoundedPolytope final : public Field {
 
   void values(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept override;
   [[nodiscard]] double lipschitz() const noexcept override;
+  [[nodiscard]] Modulus modulus() const noexcept override { return kernel_.modulus(); }
   [[nodiscard]] Interval bound(const Box& box) const noexcept override;
   [[nodiscard]] FieldPtr narrow(const Box& box) const override;
   [[nodiscard]] std::optional<Box> support() const noexcept override;

@@ -53,6 +53,7 @@ class Replication final : public Field {
 
   void values(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept override;
   [[nodiscard]] double lipschitz() const noexcept override;
+  [[nodiscard]] Modulus modulus() const noexcept override;
   [[nodiscard]] Interval bound(const Box& box) const noexcept override;
   [[nodiscard]] FieldPtr narrow(const Box& box) const override;
   void labels(const Points& points, std::span<Label> labels) const noexcept override;
