@@ -19,27 +19,42 @@ constexpr std::size_t kRemembered = 16;  // Polytopes whose folds are kept from 
 using Floats = std::array<float, kChunk>;
 using Doubles = std::array<double, kChunk>;
 
+// The loops over a chunk. Long ones are built for each instruction set; a few points are done on the spot.
+constexpr std::size_t kFewPoints = 16;
+
 /// Coordinates along one axis, relative to a polytope's centre.
-OUTCROP_SIMD_CLONES
-void relative(std::size_t n, const double* __restrict from, double centre, float* __restrict out) {
+[[gnu::always_inline]] inline void relative_loop(std::size_t n, const double* __restrict from, double centre,
+                                                 float* __restrict out) {
   for (std::size_t i = 0; i < n; ++i) out[i] = static_cast<float>(from[i] - centre);
+}
+OUTCROP_SIMD_CLONES
+void relative_many(std::size_t n, const double* from, double centre, float* out) { relative_loop(n, from, centre, out); }
+inline void relative(std::size_t n, const double* from, double centre, float* out) {
+  n <= kFewPoints ? relative_loop(n, from, centre, out) : relative_many(n, from, centre, out);
 }
 
 /// Lowers `highest` to what a fold says that the value is at most.
-OUTCROP_SIMD_CLONES
-void lower(std::size_t n, const float* __restrict fold, double above, const double* __restrict growth,
-           double* __restrict highest) {
+[[gnu::always_inline]] inline void lower_loop(std::size_t n, const float* __restrict fold, double above,
+                                              const double* __restrict growth, double* __restrict highest) {
   for (std::size_t i = 0; i < n; ++i) {
     const double value = static_cast<double>(fold[i]) + above - growth[i];
     highest[i] = value < highest[i] ? value : highest[i];
   }
 }
+OUTCROP_SIMD_CLONES
+void lower_many(std::size_t n, const float* fold, double above, const double* growth, double* highest) {
+  lower_loop(n, fold, above, growth, highest);
+}
+inline void lower(std::size_t n, const float* fold, double above, const double* growth, double* highest) {
+  n <= kFewPoints ? lower_loop(n, fold, above, growth, highest) : lower_many(n, fold, above, growth, highest);
+}
 
 /// The points at which a polytope's value may be below `values` and no higher than `highest`; their number.
-OUTCROP_SIMD_CLONES
-std::size_t choose(std::size_t n, const float* __restrict fold, double slack, const double* __restrict growth,
-                   const double* __restrict highest, const double* __restrict values,
-                   std::uint8_t* __restrict chosen) {
+[[gnu::always_inline]] inline std::size_t choose_loop(std::size_t n, const float* __restrict fold, double slack,
+                                                      const double* __restrict growth,
+                                                      const double* __restrict highest,
+                                                      const double* __restrict values,
+                                                      std::uint8_t* __restrict chosen) {
   std::array<std::uint8_t, kChunk> may;
   unsigned any = 0;
   for (std::size_t i = 0; i < n; ++i) {
@@ -54,6 +69,16 @@ std::size_t choose(std::size_t n, const float* __restrict fold, double slack, co
     count += may[i];
   }
   return count;
+}
+OUTCROP_SIMD_CLONES
+std::size_t choose_many(std::size_t n, const float* fold, double slack, const double* growth, const double* highest,
+                        const double* values, std::uint8_t* chosen) {
+  return choose_loop(n, fold, slack, growth, highest, values, chosen);
+}
+inline std::size_t choose(std::size_t n, const float* fold, double slack, const double* growth, const double* highest,
+                          const double* values, std::uint8_t* chosen) {
+  return n <= kFewPoints ? choose_loop(n, fold, slack, growth, highest, values, chosen)
+                         : choose_many(n, fold, slack, growth, highest, values, chosen);
 }
 
 Box box_of(const Points& points) noexcept {
@@ -72,7 +97,7 @@ struct Folded {
   double slack;
 };
 
-void fold_chunk(const PlacedKernel& polytope, const Points& points, const TurnedBox& box, Folded& out) noexcept {
+void fold_chunk(const PlacedKernel& polytope, const Points& points, const Box& box, Folded& out) noexcept {
   const auto& [kernel, position] = polytope;
   const std::size_t n = points.size();
   Floats x, y, z;
@@ -80,13 +105,14 @@ void fold_chunk(const PlacedKernel& polytope, const Points& points, const Turned
   relative(n, points.y.data(), position.y, y.data());
   relative(n, points.z.data(), position.z, z.data());
   kernel->folded(n, x.data(), y.data(), z.data(), out.value.data());
-  out.slack = 2.0 * kernel->rounding_slack(box.moved(-position));
+  const Vec3 farthest = glm::max(glm::abs(box.lo - position), glm::abs(box.hi - position));
+  out.slack = 2.0 * kernel->rounding_slack(farthest.x + farthest.y + farthest.z);
 }
 
 void between_chunk(std::span<const PlacedKernel> polytopes, const Points& points, const double* growth,
                    std::span<const double> floors, std::span<double> values, std::span<Vec3> gradients) noexcept {
   const std::size_t n = points.size();
-  const TurnedBox box(box_of(points));
+  const Box box = box_of(points);
   std::array<Folded, kRemembered> folds;
   Doubles highest;  // No point's result is above.
   std::copy(values.begin(), values.end(), highest.begin());

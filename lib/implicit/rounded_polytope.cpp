@@ -219,13 +219,6 @@ void PolytopeKernel::warped(int n, const float* x, const float* y, const float* 
   }
 }
 
-double PolytopeKernel::rounding_slack(const TurnedBox& local) const noexcept {
-  // Each plane's sum of four terms and each fold step may be off by an epsilon of the largest number in it.
-  const Vec3 centre = glm::abs(local.centre);
-  const double largest = centre.x + centre.y + centre.z + std::sqrt(3.0) * local.radius + std::max<double>(rounding_, farthest_);
-  return 1e-6 + static_cast<double>(planes_.size() + 8) * std::numeric_limits<float>::epsilon() * largest;
-}
-
 Interval PolytopeKernel::bound(const TurnedBox& local) const noexcept {
   // smax grows with both arguments, so folding the ends bounds the fold; the fold is 1-Lipschitz, so its value at the
   // centre bounds it too. The warp only carves: c(p) ≤ b(p) ≤ c(p) + amplitude, since c is convex and 1-Lipschitz.
@@ -239,7 +232,7 @@ Interval PolytopeKernel::bound(const TurnedBox& local) const noexcept {
     at_centre = smax(at_centre, h.at_centre(k), rounding_, inverse);
   }
   const double reach = local.radius;
-  const double slack = rounding_slack(local);
+  const double slack = rounding_slack(local.coordinate_sum());
   return {std::max(fold.lo, at_centre - reach) - slack, std::min(fold.hi, at_centre + reach) + slack + depth()};
 }
 
@@ -248,7 +241,7 @@ PolytopeKernel PolytopeKernel::narrow(const TurnedBox& local) const {
   const double around = depth() + 1e-6;
   const double reach = local.radius + around;
   const double apart =
-      rounding_ + 1e-5 + 3.0 * rounding_slack(local);  // Beyond this the fold weight is 0 to the bit.
+      rounding_ + 1e-5 + 3.0 * rounding_slack(local.coordinate_sum());  // Beyond this the fold weight is 0 to the bit.
 
   const PlanesOverBox h(planes_, local, around);
   const double inverse = inverse_of(rounding_);
@@ -312,7 +305,7 @@ std::optional<Box> PolytopeKernel::support() const noexcept {
       }
     }
   if (box.empty() || largest_coordinate_sum(box) > 0.1 * kFar) return std::nullopt;
-  return box.grown(rounding_slack(TurnedBox(box)));
+  return box.grown(rounding_slack(largest_coordinate_sum(box)));
 }
 
 RoundedPolytope::RoundedPolytope(PolytopeKernel kernel, const Vec3& centre)

@@ -1,8 +1,10 @@
 /// A smooth intersection of half-spaces, optionally carved by a relief: what a block of rock is.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -61,7 +63,16 @@ struct TurnedBox {
       : centre(box.centre()), half(0.0), radius(box.half_diagonal()) {
     for (int axis = 0; axis < 3; ++axis) half[axis][axis] = 0.5 * (box.hi[axis] - box.lo[axis]);
   }
-  [[nodiscard]] TurnedBox moved(const Vec3& by) const { TurnedBox result = *this; result.centre += by; return result; }
+  [[nodiscard]] TurnedBox moved(const Vec3& by) const {
+    TurnedBox result = *this;
+    result.centre += by;
+    return result;
+  }
+  /// The largest |x| + |y| + |z| in the box is at most this.
+  [[nodiscard]] double coordinate_sum() const {
+    const Vec3 c = glm::abs(centre);
+    return c.x + c.y + c.z + 1.7320509 * radius;
+  }
 };
 
 /// Evaluates one rounded polytope: the fold, in the order of `planes`, of
@@ -87,8 +98,12 @@ class PolytopeKernel {
   void folded(std::size_t n, const float* x, const float* y, const float* z, float* out) const noexcept;
   /// The relief's largest depth: the warp's amplitude, 0 without one.
   [[nodiscard]] double depth() const noexcept { return warp_.active() ? warp_.amplitude : 0.0; }
-  /// How far rounding may move a value in the box.
-  [[nodiscard]] double rounding_slack(const TurnedBox& local) const noexcept;
+  /// How far rounding may move a value where |x| + |y| + |z| is at most `coordinate_sum`: each plane's sum of four
+  /// terms and each fold step may be off by an epsilon of the largest number in it.
+  [[nodiscard]] double rounding_slack(double coordinate_sum) const noexcept {
+    const double largest = coordinate_sum + std::max<double>(rounding_, farthest_);
+    return 1e-6 + static_cast<double>(planes_.size() + 8) * std::numeric_limits<float>::epsilon() * largest;
+  }
 
   /// Contains b over the box (relative to the centre): fold of plane intervals, tightened by the centre value, widened
   /// by the warp's amplitude upwards only (the relief only carves).
