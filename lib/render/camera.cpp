@@ -158,7 +158,7 @@ Camera framed(const Field& field, const Box& focus, const Vec3& from_direction, 
   const bool anything = cut.lo.x < cut.hi.x && cut.lo.y < cut.hi.y && cut.lo.z < cut.hi.z;
   const Tracer tracer(field, {.region = anything ? cut : focus.grown(reach),
                               .detail = reach,
-                              .leaf_details = 1.0,
+                              .leaf_details = 0.5,
                               .eye = focus.centre(),
                               .spread = 0.0,
                               .view_angle = kPi,

@@ -13,8 +13,7 @@ namespace {
 constexpr double kOverlap = 1e-6;        // Of a leaf's size: what neighbouring leaves share.
 constexpr double kOutOfViewScale = 3.0;  // Leaves that only shadows see are so much coarser.
 constexpr int kUnseenLevels = 3;
-constexpr int kSharedLevels = 1;         // Of boxes that share one narrowed field.
-constexpr std::size_t kSurfaceParts = 16;  // A surface crosses some 4 of a cube's 8 parts, and so on for kSharedLevels.
+constexpr std::size_t kSurfaceParts = 4;  // A surface crosses some 4 of a cube's 8 parts.
 constexpr double kCubeRatio = 0.7;       // Sides longer than this share of the longest are halved.
 
 struct Node {
@@ -80,21 +79,6 @@ Leaf leaf_of(const Box& grown, FieldPtr field) {
   return {grown, std::move(field), lipschitz, {std::max(modulus.slope, 1e-3), modulus.slack}};
 }
 
-/// The parts of a narrowed box that may hold surface, all with the same field: a bound of a small box is far tighter
-/// than what a Lipschitz constant says about it, and costs less memory than a field of its own.
-void refine(const Box& box, const FieldPtr& field, const TracerOptions& options, int levels,
-            std::vector<Leaf>& leaves) {
-  const Box grown = box.grown(kOverlap * longest_side(box));
-  const Interval bound = field->bound(grown);
-  if (bound.lo > 0.0) return;
-  if (bound.hi < 0.0 && !touches_sides(box, options.region)) return;
-  if (levels == 0 || bound.hi < 0.0) {
-    leaves.push_back(leaf_of(grown, field));
-    return;
-  }
-  for (const Box& part : halves(box)) refine(part, field, options, levels - 1, leaves);
-}
-
 /// Sorts one box into nodes, leaves or nothing.
 void place(const Box& box, const Field& parent, const TracerOptions& options, Split& split) {
   const Box grown = box.grown(kOverlap * longest_side(box));
@@ -105,7 +89,7 @@ void place(const Box& box, const Field& parent, const TracerOptions& options, Sp
   if (bound.hi >= 0.0 && longest_side(box) > wanted_size(box, options))
     split.nodes.push_back({box, std::move(field)});
   else
-    refine(box, field, options, kSharedLevels, split.leaves);
+    split.leaves.push_back(leaf_of(grown, std::move(field)));
 }
 
 }  // namespace
@@ -128,15 +112,8 @@ std::vector<Leaf> build_leaves(const Field& field, const TracerOptions& options,
   while (!nodes.empty()) {
     task.check();
     if (leaves.size() + kSurfaceParts * nodes.size() > options.max_leaves) {
-      const std::vector<std::vector<Leaf>> rest = parallel_map(
-          nodes.size(),
-          [&](std::size_t i) {
-            std::vector<Leaf> parts;
-            refine(nodes[i].box, nodes[i].field, options, kSharedLevels, parts);
-            return parts;
-          },
-          Task{.stop = task.stop});
-      for (const std::vector<Leaf>& parts : rest) leaves.insert(leaves.end(), parts.begin(), parts.end());
+      for (Node& node : nodes)
+        leaves.push_back(leaf_of(node.box.grown(kOverlap * longest_side(node.box)), std::move(node.field)));
       break;
     }
     std::vector<Split> splits = parallel_map(

@@ -13,7 +13,7 @@ namespace outcrop::render {
 /// A box, and the field narrowed to it. Leaves share faces and overlap by a hair, so that no ray slips between two.
 struct Leaf {
   Box box;
-  FieldPtr field;          ///< Some neighbours share one.
+  FieldPtr field;
   double lipschitz = 1.0;  ///< Of the narrowed field.
   Modulus modulus{1.0, 0.0};
 };

@@ -44,8 +44,8 @@ struct RayCounters {
 struct TracerOptions {
   Box region;                ///< The field is cut off at its sides.
   double detail = 0.25;      ///< Metres, > 0; match the mesh's cell.
-  double leaf_details = 2.0; ///< Fields are narrowed to boxes of so many details; leaves are half as large …
-  double leaf_widths = 12.0; ///< … but not below this many ray widths, as seen from `eye`.
+  double leaf_details = 1.0; ///< Leaves are about so many details wide …
+  double leaf_widths = 6.0;  ///< … but not below this many ray widths, as seen from `eye`.
   Vec3 eye{0.0};
   double spread = 1e-3;      ///< Of the rays that leave the eye.
   Vec3 view{0, 1, 0};        ///< Unit; leaves outside the cone around it are coarser.
