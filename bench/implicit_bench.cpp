@@ -144,6 +144,39 @@ void descend(const Field& field, const Box& box, Descent& counts) {
   ++counts.bricks;
 }
 
+/// One value at a random point of the model's cube, one call each, from a field narrowed to its box of 0.8 m: what a host
+/// pays that asks point by point.
+void random_value(benchmark::State& state) {
+  constexpr int kBoxes = 32;
+  const char* const path = std::getenv("OUTCROP_BENCH_MODEL");
+  const FieldPtr field = path ? read_model(path, state.range(0) ? rough_warp() : Warp{}) : nullptr;
+  if (!field) {
+    state.SkipWithError("set OUTCROP_BENCH_MODEL to a model file");
+    return;
+  }
+  std::vector<FieldPtr> boxes(kBoxes * kBoxes * kBoxes);
+  const double side = 25.6 / kBoxes;
+  for (int i = 0; i < kBoxes * kBoxes * kBoxes; ++i) {
+    const Vec3 lo = Vec3(-12.8) + side * Vec3(i % kBoxes, i / kBoxes % kBoxes, i / (kBoxes * kBoxes));
+    boxes[i] = field->narrow({lo, lo + side});
+  }
+  std::vector<Vec3> points;
+  Rng rng(1, "bench points");
+  for (int i = 0; i < 4096; ++i) {
+    const double x = rng.uniform(-12.8, 12.8);
+    const double y = rng.uniform(-12.8, 12.8);
+    const double z = rng.uniform(-12.8, 12.8);
+    points.emplace_back(x, y, z);
+  }
+  std::size_t next = 0;
+  for (auto _ : state) {
+    const Vec3& p = points[next++ % points.size()];
+    const IVec3 box((p + 12.8) / side);
+    benchmark::DoNotOptimize(boxes[(box.z * kBoxes + box.y) * kBoxes + box.x]->value(p));
+  }
+}
+BENCHMARK(random_value)->ArgNames({"warp"})->Arg(0)->Arg(1);
+
 /// The model's cube of 25.6 m in bricks: everything from the root to the values, per point evaluated.
 void model(benchmark::State& state) {
   const char* const path = std::getenv("OUTCROP_BENCH_MODEL");

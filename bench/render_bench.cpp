@@ -23,7 +23,7 @@ constexpr int kPlanes = 20;
 constexpr double kRounding = 0.25;
 
 /// 125 blocks of 20 planes on a jittered lattice: the model of the measurements in docs, drawn anew.
-FieldPtr pile() {
+FieldPtr pile(const Warp& warp = {}) {
   const double cell = kSide / kBlocksASide;
   std::vector<FieldPtr> blocks;
   for (int i = 0; i < kBlocksASide * kBlocksASide * kBlocksASide; ++i) {
@@ -36,7 +36,7 @@ FieldPtr pile() {
       const double distance = cell * rng.uniform(0.4, 0.6);
       planes.push_back({normal, -glm::dot(normal, centre) - distance});
     }
-    blocks.push_back(std::make_shared<RoundedPolytope>(planes, centre, kRounding));
+    blocks.push_back(std::make_shared<RoundedPolytope>(planes, centre, kRounding, warp));
   }
   return union_of(std::move(blocks));
 }
@@ -61,9 +61,18 @@ void make_tracer(benchmark::State& state) {
 }
 BENCHMARK(make_tracer)->ArgName("detail_cm")->Arg(5)->Arg(20)->Unit(benchmark::kMillisecond);
 
-/// One thread: rays per second of CPU time.
+/// A relief 10 cm deep, of features a few decimetres wide.
+Warp rough_warp() {
+  Image image{.width = 512, .height = 512, .channels = 1};
+  image.pixels.resize(512 * 512);
+  Rng rng(1, "bench relief");
+  for (float& pixel : image.pixels) pixel = static_cast<float>(rng.uniform());
+  return {std::make_shared<const Relief>(Relief(image, 4.0).smoothed(0.1)), 0.1};
+}
+
+/// One thread: rays per second of CPU time. Arguments: detail, warp.
 void primary_rays(benchmark::State& state) {
-  const FieldPtr field = pile();
+  const FieldPtr field = pile(state.range(1) ? rough_warp() : Warp{});
   const TracerOptions options = tracer_options(0.01 * state.range(0));
   const Tracer tracer(*field, options);
   const Camera eye = camera();
@@ -83,7 +92,10 @@ void primary_rays(benchmark::State& state) {
   state.SetItemsProcessed(static_cast<std::int64_t>(counters.rays));
   state.counters["values_a_ray"] = static_cast<double>(counters.steps) / static_cast<double>(counters.rays);
 }
-BENCHMARK(primary_rays)->ArgName("detail_cm")->Arg(5)->Arg(20)->Arg(80)->Unit(benchmark::kMillisecond);
+BENCHMARK(primary_rays)
+    ->ArgNames({"detail_cm", "warp"})
+    ->ArgsProduct({{5, 20, 80}, {0, 1}})
+    ->Unit(benchmark::kMillisecond);
 
 /// The whole picture as programs make it, on all threads.
 void preview(benchmark::State& state) {

@@ -117,10 +117,14 @@ inline void check_finite(const Field& field, const Box& region, Rng& rng) {
   }
 }
 
-/// |f(p) − f(q)| ≤ L |p − q| for near and far pairs in the box.
+/// |f(p) − f(q)| ≤ L |p − q|, and what the modulus says, for near and far pairs in the box.
 inline void check_lipschitz(const Field& field, const Box& box, double slack, Rng& rng, int pairs) {
   const double lipschitz = field.lipschitz();
   ASSERT_TRUE(std::isfinite(lipschitz) && lipschitz >= 0.0) << "lipschitz() is " << lipschitz;
+  const Modulus modulus = field.modulus();
+  ASSERT_TRUE(std::isfinite(modulus.slope) && modulus.slope >= 0.0 && std::isfinite(modulus.slack) &&
+              modulus.slack >= 0.0)
+      << "modulus() is " << modulus.slope << ", " << modulus.slack;
   PointList from, to;
   for (int i = 0; i < pairs; ++i) {
     const Vec3 p = random_point(rng, box);
@@ -136,6 +140,8 @@ inline void check_lipschitz(const Field& field, const Box& box, double slack, Rn
     ASSERT_LE(std::abs(a.values[i] - b.values[i]), lipschitz * distance + slack)
         << "L = " << lipschitz << ", |p - q| = " << distance << ", p = " << from[i].x << ' ' << from[i].y << ' '
         << from[i].z;
+    ASSERT_LE(std::abs(a.values[i] - b.values[i]), modulus.slope * distance + modulus.slack + slack)
+        << "modulus " << modulus.slope << ", " << modulus.slack << ", |p - q| = " << distance;
   }
 }
 
@@ -164,6 +170,38 @@ inline void check_equal_in(const Field& expected, const Field& got, const Box& b
   }
 }
 
+/// `between` is the value between floor and ceiling, to the bit, and its gradient where it is below the ceiling.
+inline void check_between(const Field& field, const Box& box, Rng& rng) {
+  const PointList points = points_in(rng, box, 150);
+  const std::size_t n = points.size();
+  const FieldAnswers answers(field, points.view());
+  const double spread = std::max(glm::length(box.size()), 1e-3);
+  std::vector<double> floors, ceilings;
+  for (std::size_t i = 0; i < n; ++i) {
+    // Ends far from the value and close to it, on either side.
+    const double reach = spread * std::pow(10.0, rng.uniform(-5.0, 0.0));
+    const double middle = answers.values[i] + reach * rng.uniform(-1.0, 1.0);
+    floors.push_back(middle - reach * rng.uniform());
+    ceilings.push_back(middle + reach * rng.uniform());
+  }
+  const Vec3 untouched(7.0, 8.0, 9.0);
+  std::vector<double> got = ceilings, alone = ceilings, unbounded = ceilings;
+  std::vector<Vec3> gradients(n, untouched);
+  field.between(points.view(), floors, got, gradients);
+  field.between(points.view(), floors, alone, {});
+  field.between(points.view(), {}, unbounded, {});
+  for (std::size_t i = 0; i < n; ++i) {
+    const double v = answers.values[i];
+    ASSERT_EQ(got[i], std::max(floors[i], std::min(ceilings[i], v))) << "between floor and ceiling, point " << i;
+    ASSERT_EQ(alone[i], got[i]) << "with and without gradients, point " << i;
+    ASSERT_EQ(unbounded[i], std::min(ceilings[i], v)) << "below the ceiling, point " << i;
+    if (v <= floors[i]) continue;
+    const Vec3 expected = v < ceilings[i] ? answers.gradients[i] : untouched;
+    for (int axis = 0; axis < 3; ++axis)
+      ASSERT_EQ(gradients[i][axis], expected[axis]) << "gradient between floor and ceiling, point " << i;
+  }
+}
+
 /// narrow(box) equals in the box, keeps the contract there, and so does what it is narrowed to in turn.
 inline void check_narrow(const Field& field, const Box& box, double slack, Rng& rng) {
   FieldPtr narrowed = field.narrow(box);
@@ -173,6 +211,7 @@ inline void check_narrow(const Field& field, const Box& box, double slack, Rng& 
     ASSERT_TRUE(narrowed);
     check_equal_in(field, *narrowed, inner, rng);
     check_bound(*narrowed, inner, rng);
+    check_between(*narrowed, inner, rng);
     check_lipschitz(*narrowed, inner, slack, rng, 40);
     if (::testing::Test::HasFatalFailure()) return;
     inner = random_box(rng, inner);
@@ -234,6 +273,7 @@ inline void check_field_contract(const Field& field, const Box& region, int seed
     Rng rng(seed, "field contract");
     check_finite(field, region, rng);
     check_lipschitz(field, region, slack, rng, 200);
+    check_between(field, region, rng);
     check_bound(field, region, rng);
     check_narrow(field, region, slack, rng);
     for (int i = 0; i < 12 && !::testing::Test::HasFatalFailure(); ++i) {

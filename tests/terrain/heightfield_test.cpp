@@ -222,5 +222,35 @@ TEST(Heightfield, RefusesBrokenGrids) {
   refuses([](ElevationGrid& g) { std::fill(g.elevations.begin(), g.elevations.end(), test::kNan); });
 }
 
+TEST(Heightfield, AnswersABatchAsItAnswersSinglePositions) {
+  ElevationGrid grid{.width = 9, .height = 7, .cell_x = 2.0, .cell_y = 3.0};
+  Rng rng(1, "batch heights");
+  for (int i = 0; i < 63; ++i) grid.elevations.push_back(static_cast<float>(rng.uniform(0.0, 9.0)));
+  for (const Interpolation interpolation : {Interpolation::Smooth, Interpolation::Bilinear}) {
+    const Heightfield field(grid, interpolation);
+    // A lattice of three layers, the second shifted in one place, then positions at random.
+    std::vector<double> x, y;
+    for (int i = 0; i < 75; ++i) {
+      x.push_back(1.0 + i % 5 + (i == 33 ? 0.25 : 0.0));
+      y.push_back(2.0 + i / 5 % 5);
+    }
+    for (int i = 0; i < 75; ++i) {
+      x.push_back(rng.uniform(-5.0, 25.0));
+      y.push_back(rng.uniform(-5.0, 25.0));
+    }
+    std::vector<Heightfield::Sample> samples(x.size());
+    std::vector<double> heights(x.size());
+    field.at(x, y, samples);
+    field.heights(x, y, heights);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const Heightfield::Sample alone = field.at(x[i], y[i]);
+      ASSERT_EQ(samples[i].h, alone.h);
+      ASSERT_EQ(samples[i].hx, alone.hx);
+      ASSERT_EQ(samples[i].hy, alone.hy);
+      ASSERT_EQ(heights[i], alone.h);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace outcrop

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "implicit/field_contract.h"
+#include "implicit/shapes.h"
 #include "outcrop/core/parallel.h"
 #include "outcrop/implicit/primitives.h"
 
@@ -39,6 +40,15 @@ TEST(Replication, WithClosingCracksPassesTheFieldContract) {
                                .swelling = 0.01},
                               1.1);
   test::check_field_contract(*node, {Vec3(-9.0), Vec3(9.0)});
+}
+
+TEST(Replication, WithAReliefPassesTheFieldContract) {
+  const Warp warp{test::noise_relief(1, 64, 64, 4.0), 0.05};
+  const auto node = std::make_shared<Replication>(
+      Rock{.tile = granite(), .warp = warp, .world_from_tile = about_z(0.4)}, half_space({}),
+      ReplicationOptions{.domain = kDomain, .crack_floor = half_space({.normal = {0, 0, 1}, .offset = 1.0}),
+                         .closure = 0.1});
+  test::check_field_contract(*node, {Vec3(-9.0), Vec3(9.0)}, 4);
 }
 
 TEST(Replication, RepeatsWithThePeriodOfTheTile) {
