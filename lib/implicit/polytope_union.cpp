@@ -18,6 +18,7 @@ constexpr std::size_t kRemembered = 16;  // Polytopes whose folds are kept from 
 
 using Floats = std::array<float, kChunk>;
 using Doubles = std::array<double, kChunk>;
+constexpr Doubles kNoGrowth{};
 
 // The loops over a chunk. Long ones are built for each instruction set; a few points are done on the spot.
 constexpr std::size_t kFewPoints = 16;
@@ -162,7 +163,6 @@ void between_chunk(std::span<const PlacedKernel> polytopes, const Points& points
 
 void between_union(std::span<const PlacedKernel> polytopes, const Points& points, std::span<const double> growth,
                    std::span<const double> floors, std::span<double> values, std::span<Vec3> gradients) noexcept {
-  constexpr Doubles kNoGrowth{};
   for (std::size_t first = 0; first < points.size(); first += kChunk) {
     const std::size_t n = std::min(kChunk, points.size() - first);
     between_chunk(polytopes, points.subspan(first, n), growth.empty() ? kNoGrowth.data() : &growth[first],
