@@ -20,14 +20,15 @@ constexpr std::size_t kRunsPerThread = 64;
 }  // namespace
 
 struct ThreadLimit::Control {
+  // Made in its place: TBB knows a control by its address, so a copy limits nothing.
+  explicit Control(std::size_t threads) : control(tbb::global_control::max_allowed_parallelism, threads) {}
   tbb::global_control control;
 };
 
 ThreadLimit::ThreadLimit(int threads) {
   require(threads >= 0, "threads", "0 for all cores, or more", threads);
   if (threads == 0) return;
-  control_ = std::make_unique<Control>(
-      tbb::global_control(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads)));
+  control_ = std::make_unique<Control>(static_cast<std::size_t>(threads));
 }
 
 ThreadLimit::~ThreadLimit() = default;

@@ -113,6 +113,18 @@ TEST(ParallelFor, NeverRunsAnOuterItemInsideAnInnerLoop) {
   });
 }
 
+TEST(ThreadLimit, HoldsWhileItLives) {
+  const int all = thread_count();
+  {
+    const ThreadLimit one(1);
+    EXPECT_EQ(thread_count(), 1);
+    std::vector<std::thread::id> ran(1000);
+    parallel_for(ran.size(), [&](std::size_t i) { ran[i] = std::this_thread::get_id(); });
+    EXPECT_EQ(std::set(ran.begin(), ran.end()), std::set{std::this_thread::get_id()});
+  }
+  EXPECT_EQ(thread_count(), all);
+}
+
 TEST(ThreadLimit, RefusesNegativeCounts) {
   EXPECT_EQ(test::message_of<ParameterError>([] { ThreadLimit limit(-1); }),
             "threads: expected 0 for all cores, or more, got -1");
