@@ -44,9 +44,10 @@ Run median(int repetitions, const std::function<Run()>& run) {
 }
 
 Run by_outcrop(const outcrop::Field& field, double resolution, bool normals) {
+  const outcrop::PolygonizeOptions options{
+      .region = kRegion, .resolution = resolution, .keep_voids = true, .normals = normals, .labels = false};
   const race::CpuClock clock;
-  outcrop::PolygonizeResult result =
-      outcrop::polygonize(field, {.region = kRegion, .resolution = resolution, .keep_voids = true, .normals = normals, .labels = false});
+  outcrop::PolygonizeResult result = outcrop::polygonize(field, options);
   return {{clock.seconds()}, std::move(result.mesh)};
 }
 

@@ -3,8 +3,8 @@
 
 Usage: race.py BUILD_FOLDER
 
-Prints a Markdown table. The model is OUTCROP_BENCH_MODEL's, else one made up. fidget is fetched from crates.io and built
-into BUILD_FOLDER/fidget; its finest mesh takes a minute.
+Prints a Markdown table. The model is OUTCROP_BENCH_MODEL's, else one made up. fidget is fetched from crates.io and
+built into BUILD_FOLDER/fidget; its finest mesh takes a minute.
 """
 import json
 import re
@@ -66,7 +66,7 @@ def main():
             results += run_fidget(fidget, race, Path(folder))
 
     header("cells", "program", "CPU time", "its stages", "times " + OURS, "triangles", "open edges",
-           "edges used more than twice", "their vertices")
+           "edges used twice in one direction", "vertices with several fans")
     for cell in sorted({r["cell"] for r in results}, reverse=True):
         found = [r for r in results if r["cell"] == cell]
         ours = next(r["seconds"][0] for r in found if r["program"] == OURS)

@@ -2,7 +2,7 @@
 #include "race_openvdb.h"
 
 #include <openvdb/version.h>
-#undef OPENVDB_USE_EXPLICIT_INSTANTIATION  // volumeToMesh with our flags: faster than the one that Debian's library holds.
+#undef OPENVDB_USE_EXPLICIT_INSTANTIATION  // volumeToMesh with our flags: faster than the one in Debian's library.
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/SignedFloodFill.h>
 #include <openvdb/tools/VolumeToMesh.h>
