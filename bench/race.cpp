@@ -51,8 +51,8 @@ Run by_outcrop(const outcrop::Field& field, double resolution, bool normals) {
   return {{clock.seconds()}, std::move(result.mesh)};
 }
 
-Run by_openvdb(const outcrop::Field& field, double resolution) {
-  race::OpenVdbRun run = race::mesh_by_openvdb(field, kRegion, resolution);
+Run by_openvdb(const outcrop::Field& field, double resolution, int band) {
+  race::OpenVdbRun run = race::mesh_by_openvdb(field, kRegion, resolution, band);
   return {{run.fill_seconds + run.mesh_seconds, run.fill_seconds, run.mesh_seconds}, std::move(run.mesh)};
 }
 
@@ -76,10 +76,12 @@ int main(int argc, char** argv) {
   CLI::App app{"Meshes one model with Outcrop and with OpenVDB, one thread; a line of JSON a run.", "outcrop_race"};
   std::string model_file, expression_file, mesh_file;
   std::vector<double> cells{0.4, 0.2, 0.1, 0.05};
-  int repetitions = 3;
+  int repetitions = 3, band = 1;
   app.add_option("--model", model_file, "Planes by block; default: made up")->envname("OUTCROP_BENCH_MODEL");
   app.add_option("--cells", cells, "Edges of the cells, metres: 25.6 / 8 over a power of two")->capture_default_str();
   app.add_option("--repetitions", repetitions, "Of each; the median is printed")->capture_default_str();
+  app.add_option("--band", band, "Voxels to each side of the surface that OpenVDB's grid holds at least")
+      ->capture_default_str();
   app.add_option("--write-expression", expression_file, "Only write the model as fidget's text, in units of 12.8 m");
   app.add_option("--check", mesh_file, "Only check this mesh");
   CLI11_PARSE(app, argc, argv);
@@ -101,7 +103,7 @@ int main(int argc, char** argv) {
     for (const double cell : cells) {
       print("Outcrop without normals", cell, median(repetitions, [&] { return by_outcrop(*field, cell, false); }));
       print("Outcrop", cell, median(repetitions, [&] { return by_outcrop(*field, cell, true); }));
-      print("OpenVDB", cell, median(repetitions, [&] { return by_openvdb(*field, cell); }));
+      print("OpenVDB", cell, median(repetitions, [&] { return by_openvdb(*field, cell, band); }));
     }
   } catch (const std::exception& error) {
     std::cerr << "outcrop_race: " << error.what() << '\n';

@@ -25,14 +25,14 @@ constexpr int kLeaf = Leaf::DIM;
 /// Fills the leaves that the surface may touch, from a field narrowed on the way down as the polygonizer does.
 class Filler {
  public:
-  Filler(FloatGrid& grid, const Box& region, double resolution)
-      : accessor_(grid.getAccessor()), origin_(region.lo), resolution_(resolution) {}
+  Filler(FloatGrid& grid, const Box& region, double resolution, int band)
+      : accessor_(grid.getAccessor()), origin_(region.lo), resolution_(resolution), band_(band) {}
 
   /// @param size  Edge of the cube of voxels at `first`: kLeaf · 2ⁿ.
   void fill(const Field& field, const Coord& first, int size) {
-    // One voxel more on each side: both ends of every edge that crosses the surface hold true values then.
-    const Vec3 at(first.x(), first.y(), first.z());
-    const Box box{origin_ + resolution_ * (at - 1.0), origin_ + resolution_ * (at + double(size))};
+    // With one voxel more on each side both ends of every edge that crosses the surface hold true values.
+    const Vec3 lo = origin_ + resolution_ * Vec3(first.x(), first.y(), first.z());
+    const Box box = Box{lo, lo + resolution_ * Vec3(size - 1)}.grown(resolution_ * band_);
     const Interval bound = field.bound(box);
     if (bound.lo > 0.0 || bound.hi < 0.0) return;
     const FieldPtr narrowed = field.narrow(box);
@@ -59,19 +59,21 @@ class Filler {
   FloatGrid::Accessor accessor_;
   Vec3 origin_;
   double resolution_;
+  double band_;
   std::array<double, Leaf::SIZE> x_, y_, z_, values_;
 };
 
 }  // namespace
 
-OpenVdbRun mesh_by_openvdb(const Field& field, const Box& region, double resolution) {
+OpenVdbRun mesh_by_openvdb(const Field& field, const Box& region, double resolution, int band) {
   openvdb::initialize();
   OpenVdbRun run;
   const CpuClock fill_clock;
-  const auto grid = FloatGrid::create(static_cast<float>(3.0 * resolution));
+  const auto grid = FloatGrid::create(static_cast<float>(band * resolution));
   grid->setGridClass(openvdb::GRID_LEVEL_SET);
   grid->setTransform(openvdb::math::Transform::createLinearTransform(resolution));
-  Filler(*grid, region, resolution).fill(field, Coord(0), static_cast<int>(std::lround(region.size().x / resolution)));
+  const int size = static_cast<int>(std::lround(region.size().x / resolution));
+  Filler(*grid, region, resolution, band).fill(field, Coord(0), size);
   openvdb::tools::signedFloodFill(grid->tree());
   run.fill_seconds = fill_clock.seconds();
 

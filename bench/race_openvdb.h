@@ -15,7 +15,9 @@ struct OpenVdbRun {
 
 /// @param region      Cube whose edge is 8 · 2ⁿ voxels long; the surface lies inside.
 /// @param resolution  Voxel edge, metres.
-[[nodiscard]] OpenVdbRun mesh_by_openvdb(const Field& field, const Box& region, double resolution);
+/// @param band        Voxels to each side of the surface that are filled at least, ≥ 1. OpenVDB's level sets have 3;
+///                    for a mesh 1 is enough.
+[[nodiscard]] OpenVdbRun mesh_by_openvdb(const Field& field, const Box& region, double resolution, int band);
 
 [[nodiscard]] std::string openvdb_version();
 
