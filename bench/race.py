@@ -7,6 +7,7 @@ Prints a Markdown table. The model is OUTCROP_BENCH_MODEL's, else one made up. f
 built into BUILD_FOLDER/fidget; its finest mesh takes a minute.
 """
 import json
+import os
 import re
 import shutil
 import subprocess
@@ -59,7 +60,8 @@ def main():
     print(f"\nmachine   {machine()}\ncompiler  {compiler(build)}\n"
           f"commit    {output_of('git', 'describe', '--always', '--dirty=, with changes')}")
     version, *results = lines_of(race)
-    print(f"OpenVDB   {version['openvdb']}")
+    model = Path(os.environ.get("OUTCROP_BENCH_MODEL", "made up")).name
+    print(f"model     {model}\nOpenVDB   {version['openvdb']}")
     fidget = built_fidget(build)
     if fidget:
         with tempfile.TemporaryDirectory() as folder:

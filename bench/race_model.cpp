@@ -61,14 +61,14 @@ Model make_model(Seed seed) {
   for (int b = 0; b < kBlocks; ++b) {
     Rng rng(seed, "race block", b);
     const Vec3 cell(b % kSeedsAcross, b / kSeedsAcross % kSeedsAcross, b / kSeedsAcross / kSeedsAcross);
-    const Vec3 centre = 4.5 * (cell - 2.0) + 0.4 * rng.direction();
+    const Vec3 centre = 4.9 * (cell - 2.0) + 0.2 * rng.direction();
     std::vector<Plane>& planes = model.blocks.emplace_back();
     for (int i = 0; i < kPlanes; ++i) {
       // Spread over the sphere, so that no block has a corner far out.
       const double z = 1.0 - (2.0 * i + 1.0) / kPlanes, r = std::sqrt(1.0 - z * z);
       const Vec3 spread(r * std::cos(golden_angle * i), r * std::sin(golden_angle * i), z);
       const Vec3 normal = glm::normalize(spread + 0.25 * rng.direction());
-      const double distance = rng.uniform(2.1, 2.7);
+      const double distance = rng.uniform(1.85, 2.35);
       planes.push_back({normal, -glm::dot(normal, centre) - distance});
     }
   }
