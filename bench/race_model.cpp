@@ -61,7 +61,7 @@ Model make_model(Seed seed) {
   for (int b = 0; b < kBlocks; ++b) {
     Rng rng(seed, "race block", b);
     const Vec3 cell(b % kSeedsAcross, b / kSeedsAcross % kSeedsAcross, b / kSeedsAcross / kSeedsAcross);
-    const Vec3 centre = 4.9 * (cell - 2.0) + 0.2 * rng.direction();
+    const Vec3 centre = 4.8 * (cell - 2.0) + 0.2 * rng.direction();
     std::vector<Plane>& planes = model.blocks.emplace_back();
     for (int i = 0; i < kPlanes; ++i) {
       // Spread over the sphere, so that no block has a corner far out.
