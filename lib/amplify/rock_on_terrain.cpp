@@ -66,7 +66,12 @@ class RockOnTerrain final : public Field {
     const Vec2 lo(rectangle.lo), hi(rectangle.hi);
     if (can_.base) lipschitz_ = terrain_->lipschitz() + zone_.recess.slope_bound(lo, hi);
     if (can_.clip) lipschitz_ = std::max(lipschitz_, terrain_->lipschitz() + zone_.advance.slope_bound(lo, hi));
-    if (can_.rock) lipschitz_ = std::max(lipschitz_, rock_->lipschitz());
+    modulus_ = {lipschitz_, 0.0};
+    if (!can_.rock) return;
+    // The largest and the least of some functions change as fast as the fastest of them.
+    const Modulus rock_modulus = rock_->modulus();
+    lipschitz_ = std::max(lipschitz_, rock_->lipschitz());
+    modulus_ = {std::max(modulus_.slope, rock_modulus.slope), rock_modulus.slack};
   }
 
   void values(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept override {
@@ -78,6 +83,7 @@ class RockOnTerrain final : public Field {
   }
 
   [[nodiscard]] double lipschitz() const noexcept override { return lipschitz_; }
+  [[nodiscard]] Modulus modulus() const noexcept override { return modulus_; }
 
   [[nodiscard]] Interval bound(const Box& box) const noexcept override { return parts(box).whole; }
 
@@ -151,21 +157,24 @@ class RockOnTerrain final : public Field {
       any = any || recess[i].h > 0.0 || advance[i].h > 0.0;
     }
     if (!any) return;
-    std::array<double, kChunk> rock;
+    // Rock matters between the two envelopes alone; elsewhere it need not be known.
+    std::array<double, kChunk> base, clip;
+    for (std::size_t i = 0; i < n; ++i) {
+      base[i] = can_.base ? values[i] + recess[i].h : std::numeric_limits<double>::infinity();
+      if (can_.clip) clip[i] = values[i] - advance[i].h;
+      values[i] = base[i];
+    }
     std::array<Vec3, kChunk> rock_gradients;
     if (can_.rock)
-      rock_->values(points, {rock.data(), n}, wants_gradients ? std::span(rock_gradients).first(n) : std::span<Vec3>{});
+      rock_->between(points, {clip.data(), can_.clip ? n : 0}, values,
+                     wants_gradients ? std::span(rock_gradients).first(n) : std::span<Vec3>{});
     for (std::size_t i = 0; i < n; ++i) {
-      const double f = values[i];
-      const bool rock_wins = can_.rock && (!can_.base || rock[i] < f + recess[i].h);
-      const double inner = rock_wins ? rock[i] : f + recess[i].h;
-      const double clip = f - advance[i].h;
-      const bool clip_wins = can_.clip && clip > inner;
-      values[i] = clip_wins ? clip : inner;
+      const bool clip_wins = can_.clip && clip[i] >= values[i];
+      if (clip_wins) values[i] = clip[i];
       if (!wants_gradients) continue;
       if (clip_wins)
         gradients[i] -= Vec3(advance[i].hx, advance[i].hy, 0.0);
-      else if (rock_wins)
+      else if (values[i] < base[i])
         gradients[i] = rock_gradients[i];
       else
         gradients[i] += Vec3(recess[i].hx, recess[i].hy, 0.0);
@@ -179,6 +188,7 @@ class RockOnTerrain final : public Field {
   double cos_slope_;
   Contenders can_;
   double lipschitz_ = 1.0;
+  Modulus modulus_{1.0, 0.0};
 };
 
 }  // namespace
