@@ -9,7 +9,8 @@
 namespace outcrop {
 namespace {
 
-constexpr std::size_t kChunk = 256;
+constexpr std::size_t kChunk = 768;  // Points at a time: a mesher's brick of 9³.
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kBareSlope = 0.15;  // Radians beyond the threshold at which ground without blocks is bare rock.
 
 Box flat_box(const Vec2& lo, const Vec2& hi) { return {Vec3(lo, 0.0), Vec3(hi, 0.0)}; }
@@ -23,10 +24,14 @@ class DisplacedTerrain final : public Field {
 
   void values(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept override {
     terrain_->values(points, values, gradients);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      const Heightfield::Sample s = layer_.at(points.x[i], points.y[i]);
-      values[i] += factor_ * s.h;
-      if (!gradients.empty()) gradients[i] += factor_ * Vec3(s.hx, s.hy, 0.0);
+    std::array<Heightfield::Sample, kChunk> layer;
+    for (std::size_t first = 0; first < points.size(); first += kChunk) {
+      const std::size_t n = std::min(kChunk, points.size() - first);
+      layer_.at(points.x.subspan(first, n), points.y.subspan(first, n), std::span(layer).first(n));
+      for (std::size_t i = 0; i < n; ++i) {
+        values[first + i] += factor_ * layer[i].h;
+        if (!gradients.empty()) gradients[first + i] += factor_ * Vec3(layer[i].hx, layer[i].hy, 0.0);
+      }
     }
   }
   [[nodiscard]] double lipschitz() const noexcept override { return lipschitz_; }
@@ -68,21 +73,27 @@ class RockOnTerrain final : public Field {
     if (can_.clip) lipschitz_ = std::max(lipschitz_, terrain_->lipschitz() + zone_.advance.slope_bound(lo, hi));
     modulus_ = {lipschitz_, 0.0};
     if (!can_.rock) return;
-    // The largest and the least of some functions change as fast as the fastest of them.
     const Modulus rock_modulus = rock_->modulus();
     lipschitz_ = std::max(lipschitz_, rock_->lipschitz());
     modulus_ = {std::max(modulus_.slope, rock_modulus.slope), rock_modulus.slack};
   }
 
   void values(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept override {
+    std::ranges::fill(values, kInfinity);
+    between(points, {}, values, gradients);
+  }
+
+  void between(const Points& points, std::span<const double> floors, std::span<double> values,
+               std::span<Vec3> gradients) const noexcept override {
     for (std::size_t first = 0; first < points.size(); first += kChunk) {
       const std::size_t count = std::min(kChunk, points.size() - first);
-      chunk(points.subspan(first, count), values.subspan(first, count),
-            gradients.empty() ? gradients : gradients.subspan(first, count));
+      chunk(points.subspan(first, count), floors.empty() ? floors : floors.subspan(first, count),
+            values.subspan(first, count), gradients.empty() ? gradients : gradients.subspan(first, count));
     }
   }
 
   [[nodiscard]] double lipschitz() const noexcept override { return lipschitz_; }
+  /// max and min change by no more than the largest change of an argument.
   [[nodiscard]] Modulus modulus() const noexcept override { return modulus_; }
 
   [[nodiscard]] Interval bound(const Box& box) const noexcept override { return parts(box).whole; }
@@ -126,7 +137,6 @@ class RockOnTerrain final : public Field {
     const Interval recess = zone_.recess.height_bound(lo, hi);
     const Interval advance = zone_.advance.height_bound(lo, hi);
     const Interval f = terrain_->bound(box);
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
     Parts p{.outside = recess.hi <= 0.0 && advance.hi <= 0.0,
             .clip = {f.lo - advance.hi, f.hi - std::max(advance.lo, 0.0)},
             .base = {f.lo + std::max(recess.lo, 0.0), f.hi + recess.hi},
@@ -145,39 +155,39 @@ class RockOnTerrain final : public Field {
     return p;
   }
 
-  void chunk(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept {
+  void chunk(const Points& points, std::span<const double> floors, std::span<double> values,
+             std::span<Vec3> gradients) const noexcept {
     const std::size_t n = points.size();
     const bool wants_gradients = !gradients.empty();
-    terrain_->values(points, values, gradients);
+    std::array<double, kChunk> clip, inner;
+    std::array<Vec3, kChunk> clip_gradients, inner_gradients;
+    terrain_->values(points, {clip.data(), n}, {clip_gradients.data(), wants_gradients ? n : 0});
     std::array<Heightfield::Sample, kChunk> recess, advance;
+    zone_.recess.at(points.x, points.y, std::span(recess).first(n));
+    zone_.advance.at(points.x, points.y, std::span(advance).first(n));
     bool any = false;
+    for (std::size_t i = 0; i < n; ++i) any = any || recess[i].h > 0.0 || advance[i].h > 0.0;
+    const bool asks_rock = can_.rock && any, base_counts = can_.base || !any;
     for (std::size_t i = 0; i < n; ++i) {
-      recess[i] = zone_.recess.at(points.x[i], points.y[i]);
-      advance[i] = zone_.advance.at(points.x[i], points.y[i]);
-      any = any || recess[i].h > 0.0 || advance[i].h > 0.0;
+      inner[i] = std::min(base_counts ? clip[i] + recess[i].h : kInfinity, values[i]);
+      if (wants_gradients) {
+        inner_gradients[i] = clip_gradients[i] + Vec3(recess[i].hx, recess[i].hy, 0.0);
+        clip_gradients[i] -= Vec3(advance[i].hx, advance[i].hy, 0.0);
+      }
+      clip[i] = can_.clip ? clip[i] - advance[i].h : -kInfinity;
+      if (!floors.empty()) clip[i] = std::max(clip[i], floors[i]);
     }
-    if (!any) return;
-    // Rock matters between the two envelopes alone; elsewhere it need not be known.
-    std::array<double, kChunk> base, clip;
+    // The blocks matter only where they are below the base and above the clip.
+    if (asks_rock)
+      rock_->between(points, {clip.data(), n}, {inner.data(), n}, {inner_gradients.data(), wants_gradients ? n : 0});
     for (std::size_t i = 0; i < n; ++i) {
-      base[i] = can_.base ? values[i] + recess[i].h : std::numeric_limits<double>::infinity();
-      if (can_.clip) clip[i] = values[i] - advance[i].h;
-      values[i] = base[i];
-    }
-    std::array<Vec3, kChunk> rock_gradients;
-    if (can_.rock)
-      rock_->between(points, {clip.data(), can_.clip ? n : 0}, values,
-                     wants_gradients ? std::span(rock_gradients).first(n) : std::span<Vec3>{});
-    for (std::size_t i = 0; i < n; ++i) {
-      const bool clip_wins = can_.clip && clip[i] >= values[i];
-      if (clip_wins) values[i] = clip[i];
-      if (!wants_gradients) continue;
-      if (clip_wins)
-        gradients[i] -= Vec3(advance[i].hx, advance[i].hy, 0.0);
-      else if (values[i] < base[i])
-        gradients[i] = rock_gradients[i];
-      else
-        gradients[i] += Vec3(recess[i].hx, recess[i].hy, 0.0);
+      const double value = std::max(clip[i], inner[i]);
+      if (value < values[i]) {
+        values[i] = value;
+        if (wants_gradients) gradients[i] = value > clip[i] ? inner_gradients[i] : clip_gradients[i];
+      } else if (!floors.empty()) {
+        values[i] = std::max(floors[i], values[i]);
+      }
     }
   }
 
@@ -187,8 +197,8 @@ class RockOnTerrain final : public Field {
   Label ground_;
   double cos_slope_;
   Contenders can_;
-  double lipschitz_ = 1.0;
-  Modulus modulus_{1.0, 0.0};
+  double lipschitz_ = 0.0;
+  Modulus modulus_{0.0, 0.0};
 };
 
 }  // namespace

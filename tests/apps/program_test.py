@@ -194,7 +194,7 @@ class BadOptions(ProgramTest):
         self.assert_refused(result, "region", "0 0 47 47", "100 0 200 50")
 
     def test_resolution_beyond_memory_says_what_fits(self):
-        result = self.amplify("cliff.exr", "--resolution", "0.01", "--memory-limit", "0.05", "-o", "out/a.ply")
+        result = self.amplify("cliff.exr", "--resolution", "0.01", "--memory-limit", "0.05", "-o", "out/a.vdb")
         self.assert_refused(result, "resolution", "0.01", "memory")
 
     def test_outputs_that_cannot_be(self):
