@@ -221,7 +221,7 @@ FieldPtr outcrop_on_hills() {
 
 /// Off the surface by |f| / |∇f|, for points spread over the area: mean and root mean square.
 std::array<double, 2> errors(const outcrop::Field& field, const outcrop::TriangleMesh& mesh) {
-  constexpr std::size_t kPoints = 20'000;
+  constexpr std::size_t kPoints = 200'000;
   std::vector<double> area;
   const auto corner = [&](std::uint32_t v) { return mesh.origin + Vec3(mesh.positions[v]); };
   for (const auto& t : mesh.triangles)
@@ -287,7 +287,7 @@ BENCHMARK(mesh_tile_with_openvdb)
     ->Arg(1)
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime();
-BENCHMARK(adaptivity)->ArgNames({"tolerance_percent"})->Arg(10)->Arg(25)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
+BENCHMARK(adaptivity)->ArgNames({"tolerance_percent"})->Arg(1)->Arg(4)->Arg(10)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
 BENCHMARK(budget)->ArgNames({"wanted"})->Arg(200'000)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
 
 // Arguments: cells along the region, threads. CPU time of all threads, so that rates are those of one core.
