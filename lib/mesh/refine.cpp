@@ -158,7 +158,45 @@ double BrickError::measure(double enough, const Lattice& lattice, const Field& f
   error = std::max(error, hidden(enough, lattice, field, brick, values));
   if (error > enough) return error;
   const int subdivisions = std::min(1 << (brick.level - 1), kMostSubdivisions);
-  return subdivisions == 1 ? error : std::max(error, deviation(lattice, field, subdivisions));
+  if (subdivisions > 1) error = std::max(error, deviation(lattice, field, subdivisions));
+  return error > enough ? error : std::max(error, buried(lattice, field, brick, values));
+}
+
+double BrickError::buried(const Lattice& lattice, const Field& field, const Brick& brick, const BrickValues& values) {
+  const int probes = std::min((1 << brick.level) / 4, kMostSubdivisions);
+  if (probes == 0) return 0.0;
+  x_.clear();
+  y_.clear();
+  z_.clear();
+  slopes_.clear();
+  const Vec3 first(brick.first());
+  const double stride = 1 << brick.level;
+  const double reach = field.lipschitz() * 0.5 * stride * glm::length(lattice.step);
+  for (int k = 0; k < brick.cells.z; ++k)
+    for (int j = 0; j < brick.cells.y; ++j)
+      for (int i = 0; i < brick.cells.x; ++i) {
+        double lowest = kUnlimited, highest = -kUnlimited;
+        for (int corner = 0; corner < 8; ++corner) {
+          const double f = values.at(i + j * 9 + k * 81 + (corner & 1) + 9 * (corner >> 1 & 1) + 81 * (corner >> 2));
+          lowest = std::min(lowest, f);
+          highest = std::max(highest, f);
+        }
+        if (lowest > reach || highest < -reach || (lowest < 0.0 && highest >= 0.0)) continue;
+        for (int probe = 0; probe < probes * probes * probes; ++probe) {
+          const Vec3 part(probe % probes, probe / probes % probes, probe / (probes * probes));
+          const Vec3 p = lattice.place(first + stride * (Vec3(i, j, k) + (part + 0.5) / double(probes)));
+          x_.push_back(p.x);
+          y_.push_back(p.y);
+          z_.push_back(p.z);
+          slopes_.push_back(lowest < 0.0 ? 1.0 : -1.0);
+        }
+      }
+  f_.resize(x_.size());
+  field.values({x_, y_, z_}, f_, {});
+  evaluations_ += f_.size();
+  double most = 0.0;
+  for (std::size_t i = 0; i < f_.size(); ++i) most = std::max(most, f_[i] * slopes_[i]);
+  return most;
 }
 
 namespace {

@@ -38,6 +38,9 @@ class BrickError {
   };
   [[nodiscard]] double hidden(double enough, const Lattice& lattice, const Field& field, const Brick& brick,
                               const BrickValues& values);
+  /// Surface in cells of one sign that are large enough to bury a block, as far as the Lipschitz constant allows any.
+  [[nodiscard]] double buried(const Lattice& lattice, const Field& field, const Brick& brick,
+                              const BrickValues& values);
   void reconstruct(const Lattice& lattice, const Brick& brick, const BrickValues& values);
   [[nodiscard]] double deviation(const Lattice& lattice, const Field& field, int subdivisions);
 

@@ -289,6 +289,18 @@ TEST(AdaptiveMesh, ShowsPlatesAndCracksThatNodesFallInto) {
   }
 }
 
+TEST(AdaptiveMesh, FindsStonesThatLieBetweenCoarseNodes) {
+  // Flat ground with a stone 10 finest cells across above it, in cells up to 16 times the finest.
+  for (std::uint64_t i = 0; i < 20; ++i) {
+    Rng rng(3, "stone", i);
+    const double x = rng.uniform(-2.0, 2.0), y = rng.uniform(-2.0, 2.0), z = rng.uniform(0.15, 0.6);
+    const Vec3 centre(x, y, z);
+    const FieldPtr field = formula([=](const Vec3& p) { return std::min(p.z, glm::length(p - centre) - 0.1); });
+    const TriangleMesh mesh = polygonize(*field, cube(2.56, 0.02, 0.002)).mesh;
+    EXPECT_EQ(check_mesh(mesh).parts, 2u) << "stone " << i;
+  }
+}
+
 TEST(AdaptiveMesh, ReportsItsSmallestAngle) {
   // Vertices keep off the ends of their edges, so that no angle is 0; marching cubes promise no more.
   PolygonizeOptions options{.region = {{-4, -4, -1}, {4, 4, 1}}, .resolution = 0.02, .tolerance = 0.005};
