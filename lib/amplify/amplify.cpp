@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kReachInBlocks = 1.8;       // Mean block sizes; recess 1 hides the base behind whole blocks.
 constexpr double kRasterPerReach = 64.0;     // Nodes of the rock zone's raster across its reach: rims lose two of them …
-constexpr double kRasterNodes = 4e6;         // … but no more than this many in all: 42 bytes each, two layers.
+constexpr double kRasterNodes = 24e6;        // … but no more than this many in all: 5.4 bytes each, two layers.
 constexpr double kPlaceableShare = 0.7;      // Of a tile's volume; below that, its blocks are too small for the resolution.
 constexpr double kCellsInSmallestBlock = 2.0;  // Design decision 10.
 constexpr double kClosureSlope = 0.05;       // Blocks grow by this much a metre below the crack floor.
@@ -198,7 +198,7 @@ Amplified amplify(const Heightfield& heightfield, const StrataFile& strata_file,
   const auto stratified = std::make_shared<StratifiedTerrain>(filled, strata);
   const Placement& placement = strata_file.placement;
   FieldPtr rock_field;
-  RockZone zone{heightfield, heightfield, heightfield, placement.slope, true};
+  RockZone zone{.slope = placement.slope};
   const double margin = 2.0 * reach * std::max(1.0, placement.recess);
   const Vec2 zone_extent = hi - lo + 2.0 * margin;
   const double spacing = std::max(reach / kRasterPerReach, std::sqrt(zone_extent.x * zone_extent.y / kRasterNodes));
@@ -218,7 +218,7 @@ Amplified amplify(const Heightfield& heightfield, const StrataFile& strata_file,
     const FieldPtr clip = displaced_terrain(filled, zone.advance, -1.0);
     const auto visible = [&](const Box& box) {
       const Vec2 a(box.lo), b(box.hi);
-      if (zone.recess.height_bound(a, b).hi <= 0.0 && zone.advance.height_bound(a, b).hi <= 0.0) return false;
+      if (zone.recess.bound(a, b).hi <= 0.0 && zone.advance.bound(a, b).hi <= 0.0) return false;
       return base->bound(box).hi > 0.0 && clip->bound(box).lo < 0.0;
     };
     const auto slope = [&](const Vec3& p) { return zone.nearby.at(p.x, p.y).h > 0.0 ? 0.5 * kPi : 0.0; };

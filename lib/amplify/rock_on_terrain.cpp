@@ -17,7 +17,7 @@ Box flat_box(const Vec2& lo, const Vec2& hi) { return {Vec3(lo, 0.0), Vec3(hi, 0
 
 class DisplacedTerrain final : public Field {
  public:
-  DisplacedTerrain(FieldPtr terrain, Heightfield layer, double factor, const Box& rectangle)
+  DisplacedTerrain(FieldPtr terrain, RasterLayer layer, double factor, const Box& rectangle)
       : terrain_(std::move(terrain)), layer_(std::move(layer)), factor_(factor) {
     lipschitz_ = terrain_->lipschitz() + std::abs(factor_) * layer_.slope_bound(Vec2(rectangle.lo), Vec2(rectangle.hi));
   }
@@ -37,7 +37,7 @@ class DisplacedTerrain final : public Field {
   [[nodiscard]] double lipschitz() const noexcept override { return lipschitz_; }
   [[nodiscard]] Interval bound(const Box& box) const noexcept override {
     const Interval f = terrain_->bound(box);
-    const Interval e = layer_.height_bound(Vec2(box.lo), Vec2(box.hi));
+    const Interval e = layer_.bound(Vec2(box.lo), Vec2(box.hi));
     return {f.lo + std::min(factor_ * e.lo, factor_ * e.hi), f.hi + std::max(factor_ * e.lo, factor_ * e.hi)};
   }
   [[nodiscard]] FieldPtr narrow(const Box& box) const override {
@@ -46,9 +46,42 @@ class DisplacedTerrain final : public Field {
 
  private:
   FieldPtr terrain_;
-  Heightfield layer_;
+  RasterLayer layer_;
   double factor_;
   double lipschitz_ = 1.0;
+};
+
+/// What stands where no block does: bare rock where it is steep, else soil.
+struct Bare {
+  FieldPtr strata;
+  Label soil;
+  double cos_slope;  ///< Of the gentlest bare rock.
+
+  [[nodiscard]] bool is_soil(const Vec3& up) const noexcept { return up.z > cos_slope * glm::length(up); }
+};
+
+/// The terrain where no block can be.
+class BareTerrain final : public Field {
+ public:
+  BareTerrain(FieldPtr terrain, Bare bare) : terrain_(std::move(terrain)), bare_(std::move(bare)) {}
+
+  void values(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept override {
+    terrain_->values(points, values, gradients);
+  }
+  [[nodiscard]] double lipschitz() const noexcept override { return terrain_->lipschitz(); }
+  [[nodiscard]] Interval bound(const Box& box) const noexcept override { return terrain_->bound(box); }
+  [[nodiscard]] FieldPtr narrow(const Box& box) const override {
+    return std::make_shared<BareTerrain>(terrain_->narrow(box), bare_);
+  }
+  void labels(const Points& points, std::span<Label> labels) const noexcept override {
+    bare_.strata->labels(points, labels);
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (bare_.is_soil(terrain_->gradient(points[i]))) labels[i] = bare_.soil;
+  }
+
+ private:
+  FieldPtr terrain_;
+  Bare bare_;
 };
 
 /// Which of the three surfaces can be the field's somewhere in a box.
@@ -59,14 +92,11 @@ struct Contenders {
 /// See rock_on_terrain. What is no contender is neither evaluated nor counted in the Lipschitz constant.
 class RockOnTerrain final : public Field {
  public:
-  RockOnTerrain(FieldPtr terrain, RockZone zone, FieldPtr rock, FieldPtr strata, Label ground, Contenders contenders,
-                const Box& rectangle)
+  RockOnTerrain(FieldPtr terrain, RockZone zone, FieldPtr rock, Bare bare, Contenders contenders, const Box& rectangle)
       : terrain_(std::move(terrain)),
         zone_(std::move(zone)),
         rock_(std::move(rock)),
-        strata_(std::move(strata)),
-        ground_(ground),
-        cos_slope_(std::cos(std::min(zone_.slope + kBareSlope, 0.5 * kPi))),
+        bare_(std::move(bare)),
         can_(contenders) {
     const Vec2 lo(rectangle.lo), hi(rectangle.hi);
     if (can_.base) lipschitz_ = terrain_->lipschitz() + zone_.recess.slope_bound(lo, hi);
@@ -100,19 +130,19 @@ class RockOnTerrain final : public Field {
 
   [[nodiscard]] FieldPtr narrow(const Box& box) const override {
     const Parts p = parts(box);
-    if (p.outside) return terrain_->narrow(box);
+    if (p.outside) return std::make_shared<BareTerrain>(terrain_->narrow(box), bare_);
     // min and max return one of their arguments: a contender that loses everywhere in the box is dropped to the bit.
     Contenders can = can_;
     can.rock = can_.rock && !(can_.base && p.rock.lo > p.base.hi);
     can.base = can_.base && !(can.rock && p.base.lo > p.rock.hi);
     can.clip = can_.clip && !(p.clip.hi < p.inner.lo);
     if (!can.base && !can.clip) return rock_->narrow(box);
-    return std::make_shared<RockOnTerrain>(terrain_->narrow(box), zone_, can.rock ? rock_->narrow(box) : nullptr, strata_,
-                                           ground_, can, box);
+    return std::make_shared<RockOnTerrain>(terrain_->narrow(box), zone_, can.rock ? rock_->narrow(box) : nullptr, bare_, can,
+                                           box);
   }
 
   void labels(const Points& points, std::span<Label> labels) const noexcept override {
-    strata_->labels(points, labels);
+    bare_.strata->labels(points, labels);
     for (std::size_t i = 0; i < points.size(); ++i) {
       const Vec3 p = points[i];
       const Heightfield::Sample recess = zone_.recess.at(p.x, p.y);
@@ -121,7 +151,7 @@ class RockOnTerrain final : public Field {
         rock_->labels(points.subspan(i, 1), labels.subspan(i, 1));
       } else {
         const Vec3 up = terrain_->gradient(p) + Vec3(recess.hx, recess.hy, 0.0);
-        if (up.z > cos_slope_ * glm::length(up)) labels[i] = ground_;
+        if (bare_.is_soil(up)) labels[i] = bare_.soil;
       }
     }
   }
@@ -134,8 +164,8 @@ class RockOnTerrain final : public Field {
 
   [[nodiscard]] Parts parts(const Box& box) const noexcept {
     const Vec2 lo(box.lo), hi(box.hi);
-    const Interval recess = zone_.recess.height_bound(lo, hi);
-    const Interval advance = zone_.advance.height_bound(lo, hi);
+    const Interval recess = zone_.recess.bound(lo, hi);
+    const Interval advance = zone_.advance.bound(lo, hi);
     const Interval f = terrain_->bound(box);
     Parts p{.outside = recess.hi <= 0.0 && advance.hi <= 0.0,
             .clip = {f.lo - advance.hi, f.hi - std::max(advance.lo, 0.0)},
@@ -193,9 +223,8 @@ class RockOnTerrain final : public Field {
 
   FieldPtr terrain_;
   RockZone zone_;
-  FieldPtr rock_, strata_;
-  Label ground_;
-  double cos_slope_;
+  FieldPtr rock_;
+  Bare bare_;
   Contenders can_;
   double lipschitz_ = 0.0;
   Modulus modulus_{0.0, 0.0};
@@ -203,15 +232,17 @@ class RockOnTerrain final : public Field {
 
 }  // namespace
 
-FieldPtr displaced_terrain(FieldPtr terrain, Heightfield layer, double factor) {
+FieldPtr displaced_terrain(FieldPtr terrain, RasterLayer layer, double factor) {
   const Box rectangle = flat_box(layer.lo(), layer.hi());
   return std::make_shared<DisplacedTerrain>(std::move(terrain), std::move(layer), factor, rectangle);
 }
 
 FieldPtr rock_on_terrain(FieldPtr terrain, RockZone zone, FieldPtr rock, FieldPtr strata, Label ground) {
   const Box rectangle = flat_box(zone.recess.lo(), zone.recess.hi());
-  return std::make_shared<RockOnTerrain>(std::move(terrain), std::move(zone), std::move(rock), std::move(strata), ground,
-                                         Contenders{.rock = rock != nullptr}, rectangle);
+  Bare bare{std::move(strata), ground, std::cos(std::min(zone.slope + kBareSlope, 0.5 * kPi))};
+  const Contenders contenders{.rock = rock != nullptr};
+  return std::make_shared<RockOnTerrain>(std::move(terrain), std::move(zone), std::move(rock), std::move(bare), contenders,
+                                         rectangle);
 }
 
 }  // namespace outcrop

@@ -47,14 +47,7 @@ struct Raster {
     return index(std::clamp(static_cast<int>(at.x), 0, width - 1), std::clamp(static_cast<int>(at.y), 0, height - 1));
   }
 
-  [[nodiscard]] Heightfield layer(const std::vector<float>& nodes) const {
-    ElevationGrid grid{.width = width, .height = height, .cell_x = spacing, .cell_y = spacing, .origin = lo};
-    grid.elevations.resize(nodes.size());
-    for (int row = 0; row < height; ++row)
-      std::copy_n(nodes.begin() + static_cast<std::ptrdiff_t>(index(0, row)), width,
-                  grid.elevations.begin() + static_cast<std::ptrdiff_t>(index(0, height - 1 - row)));
-    return Heightfield(std::move(grid), Interpolation::Bilinear);
-  }
+  [[nodiscard]] RasterLayer layer(std::vector<float> nodes) const { return {width, height, lo, spacing, std::move(nodes)}; }
 
   /// Calls visit(node's index, column, row) for each node, rows in parallel.
   template <class Visit>
@@ -148,7 +141,7 @@ std::vector<Offset> disc_offsets(double radius, double spacing) {
 
 /// How far the ground falls and rises within the reach.
 struct Envelopes {
-  Heightfield fall, rise;
+  RasterLayer fall, rise;
 };
 
 template <class Near, class Reach>
@@ -173,7 +166,7 @@ Envelopes make_envelopes(const Heightfield& heightfield, const Raster& raster, d
       rise[i] = std::max(rise[i], weight(advance_radius) * difference);
     }
   }, task);
-  return {raster.layer(fall), raster.layer(rise)};
+  return {raster.layer(std::move(fall)), raster.layer(std::move(rise))};
 }
 
 }  // namespace
@@ -216,7 +209,7 @@ RockZone make_rock_zone(const Heightfield& heightfield, const RockZoneOptions& o
         std::min(envelopes.rise.at(p.x, p.y).h, std::max(slope, 1.0) * kAdvanceGrowth * rim[i]));
   });
   const bool empty = std::ranges::none_of(steep, [](char s) { return s != 0; });
-  return {raster.layer(recess), raster.layer(advance), coarse.layer(nearby), options.slope, empty};
+  return {raster.layer(std::move(recess)), raster.layer(std::move(advance)), coarse.layer(std::move(nearby)), options.slope, empty};
 }
 
 }  // namespace outcrop

@@ -6,6 +6,7 @@
 #include "outcrop/core/task.h"
 #include "outcrop/implicit/field.h"
 #include "outcrop/terrain/heightfield.h"
+#include "outcrop/terrain/raster_layer.h"
 
 namespace outcrop {
 
@@ -26,9 +27,9 @@ struct RockZoneOptions {
 /// stand as well. They grow from 0 at the rim of the steep ground, and are exactly 0 over nodata and over ground that is not
 /// steep, unless it is a ledge of the wall narrower than a block.
 struct RockZone {
-  Heightfield recess;   ///< ≥ 0, metres, bilinear.
-  Heightfield advance;  ///< ≥ 0, metres, bilinear.
-  Heightfield nearby;   ///< > 0 where steep ground lies within reach.
+  RasterLayer recess;   ///< ≥ 0, metres.
+  RasterLayer advance;  ///< ≥ 0, metres.
+  RasterLayer nearby;   ///< > 0 where steep ground lies within reach.
   double slope = 0.0;   ///< The threshold, radians.
   bool empty = true;    ///< No steep ground at all.
 };
@@ -37,7 +38,7 @@ struct RockZone {
 [[nodiscard]] RockZone make_rock_zone(const Heightfield& heightfield, const RockZoneOptions& options, const Task& task = {});
 
 /// terrain + factor · layer(x, y): the terrain withdrawn (factor > 0) or advanced (< 0).
-[[nodiscard]] FieldPtr displaced_terrain(FieldPtr terrain, Heightfield layer, double factor);
+[[nodiscard]] FieldPtr displaced_terrain(FieldPtr terrain, RasterLayer layer, double factor);
 
 /// max(f − advance, min(f + recess, rock)): rock between the envelopes, the terrain's own bits where both are 0.
 ///

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "bicubic.h"
+#include "each_position.h"
 #include "nodata.h"
 #include "outcrop/core/error.h"
 #include "outcrop/core/parallel.h"
@@ -24,18 +25,6 @@ constexpr double kLargestElevation = 1e9;  // Metres; slopes and twists of such 
 constexpr double kSmallestCell = 1e-6;     // Metres.
 constexpr double kRoundingSlack = 1e-12;   // Relative; evaluation in doubles errs by some 1e-15 of the largest term.
 constexpr double kAbsoluteSlack = 1e-9;    // Metres.
-
-/// out[i] = evaluate(x[i], y[i]). Where positions come back after a number of others, as in the layers of a lattice, what
-/// was computed is taken again, so that results do not depend on the batch.
-template <class Value, class Evaluate>
-void each_position(std::span<const double> x, std::span<const double> y, std::span<Value> out, Evaluate&& evaluate) {
-  std::size_t period = 1;
-  while (period < x.size() && (x[period] != x[0] || y[period] != y[0])) ++period;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const bool again = i >= period && x[i] == x[i - period] && y[i] == y[i - period];
-    out[i] = again ? out[i - period] : evaluate(x[i], y[i]);
-  }
-}
 
 // Nodes that interpolate a map of samples over the patches of a grid, with their bounds.
 struct Surface {
@@ -184,11 +173,11 @@ Heightfield::Heightfield(ElevationGrid grid, Interpolation interpolation) {
 Heightfield::Sample Heightfield::at(double x, double y) const noexcept { return data_->ground_at(x, y); }
 
 void Heightfield::at(std::span<const double> x, std::span<const double> y, std::span<Sample> samples) const noexcept {
-  each_position(x, y, samples, [this](double at_x, double at_y) { return data_->ground_at(at_x, at_y); });
+  terrain::each_position(x, y, samples, [this](double at_x, double at_y) { return data_->ground_at(at_x, at_y); });
 }
 
 void Heightfield::heights(std::span<const double> x, std::span<const double> y, std::span<double> h) const noexcept {
-  each_position(x, y, h, [this](double at_x, double at_y) { return data_->height_at(at_x, at_y); });
+  terrain::each_position(x, y, h, [this](double at_x, double at_y) { return data_->height_at(at_x, at_y); });
 }
 
 Interval Heightfield::height_bound(const Vec2& a, const Vec2& b) const noexcept {
