@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "distance_transform.h"
 #include "outcrop/core/parallel.h"
+#include "outcrop/terrain/distance_transform.h"
 
 namespace outcrop {
 namespace {
@@ -61,9 +61,7 @@ struct Raster {
   /// Distance in metres to the nearest node whose mark is `mark`, at most `farthest`.
   [[nodiscard]] std::vector<float> distance(std::vector<char> marks, bool mark, double farthest) const {
     for (char& m : marks) m = (m != 0) == mark;
-    std::vector<float> distances = distance_to_marked(width, height, marks, static_cast<float>(farthest / spacing));
-    for (float& d : distances) d *= static_cast<float>(spacing);
-    return distances;
+    return distance_to_marked(width, height, Vec2(spacing), marks, static_cast<float>(farthest));
   }
 };
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "outcrop/core/parallel.h"
+#include "outcrop/terrain/distance_transform.h"
 
 namespace outcrop::terrain {
 namespace {
@@ -87,50 +88,9 @@ void sweep(Level& level, bool forwards) {
 
 /// Metres from every sample to the nearest one whose NaN-ness is `nan`; infinite when there is none.
 std::vector<double> distances(const ElevationGrid& grid, bool nan) {
-  const int width = grid.width, height = grid.height;
-  std::vector<double> result(grid.elevations.size(), kInfinity);
-  const auto at = [&](int c, int r) -> double& { return result[static_cast<std::size_t>(r) * width + c]; };
-
-  // Along columns: two sweeps that count steps.
-  parallel_for(static_cast<std::size_t>(width), [&](std::size_t column) {
-    const int c = static_cast<int>(column);
-    double d = kInfinity;
-    for (int r = 0; r < height; ++r) at(c, r) = d = std::isnan(grid.at(c, r)) == nan ? 0.0 : d + grid.cell_y;
-    d = kInfinity;
-    for (int r = height - 1; r >= 0; --r) at(c, r) = d = std::min(at(c, r), d + grid.cell_y);
-  });
-
-  // Along rows: the lower envelope of the parabolas g² + (x − x')².
-  parallel_for(static_cast<std::size_t>(height), [&](std::size_t row) {
-    double* const line = &result[row * width];
-    std::vector<int> apex;      // Columns of the envelope's parabolas, left to right.
-    std::vector<double> start;  // Where each takes over, in metres.
-    std::vector<double> square(width);
-    for (int c = 0; c < width; ++c) {
-      square[c] = line[c] * line[c];
-      if (std::isinf(square[c])) continue;
-      double from = -kInfinity;
-      while (!apex.empty()) {
-        const double xa = apex.back() * grid.cell_x, xb = c * grid.cell_x;
-        from = 0.5 * ((square[c] - square[apex.back()]) / (xb - xa) + xa + xb);
-        if (from > start.back()) break;
-        apex.pop_back();
-        start.pop_back();
-        from = -kInfinity;
-      }
-      apex.push_back(c);
-      start.push_back(from);
-    }
-    if (apex.empty()) return;
-    std::size_t k = 0;
-    for (int c = 0; c < width; ++c) {
-      const double x = c * grid.cell_x;
-      while (k + 1 < apex.size() && start[k + 1] < x) ++k;
-      const double dx = x - apex[k] * grid.cell_x;
-      line[c] = std::sqrt(square[apex[k]] + dx * dx);
-    }
-  });
-  return result;
+  std::vector<char> marked(grid.elevations.size());
+  for (std::size_t i = 0; i < marked.size(); ++i) marked[i] = std::isnan(grid.elevations[i]) == nan;
+  return distance_to_marked(grid.width, grid.height, {grid.cell_x, grid.cell_y}, marked, kInfinity);
 }
 
 }  // namespace

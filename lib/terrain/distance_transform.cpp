@@ -1,0 +1,78 @@
+#include "outcrop/terrain/distance_transform.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "outcrop/core/parallel.h"
+
+namespace outcrop {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// result[i] = min over j of (step · (i − j))² + squared[j].
+std::vector<double> lower_envelope(const std::vector<double>& squared, double step) {
+  std::vector<double> apex;        // Of the parabolas that are lowest somewhere, from left to right …
+  std::vector<double> apex_value;
+  std::vector<double> start;       // … and where they begin to be.
+  for (std::size_t i = 0; i < squared.size(); ++i) {
+    if (squared[i] == kInfinity) continue;
+    const double x = step * static_cast<double>(i);
+    double from = -kInfinity;
+    while (!apex.empty()) {
+      from = 0.5 * ((squared[i] - apex_value.back()) / (x - apex.back()) + x + apex.back());
+      if (from > start.back()) break;
+      apex.pop_back();
+      apex_value.pop_back();
+      start.pop_back();
+      from = -kInfinity;
+    }
+    apex.push_back(x);
+    apex_value.push_back(squared[i]);
+    start.push_back(from);
+  }
+  std::vector<double> result(squared.size(), kInfinity);
+  for (std::size_t i = 0, k = 0; i < squared.size() && !apex.empty(); ++i) {
+    const double x = step * static_cast<double>(i);
+    while (k + 1 < apex.size() && start[k + 1] < x) ++k;
+    result[i] = (x - apex[k]) * (x - apex[k]) + apex_value[k];
+  }
+  return result;
+}
+
+}  // namespace
+
+template <class Real>
+std::vector<Real> distance_to_marked(int width, int height, const Vec2& cell, const std::vector<char>& marked, Real farthest) {
+  std::vector<Real> distances(marked.size(), farthest);
+  const auto columns = static_cast<std::size_t>(width), rows = static_cast<std::size_t>(height);
+  const Real step = static_cast<Real>(cell.y);
+  // Along a column two sweeps that count steps, from below and from above.
+  parallel_for(columns, [&](std::size_t column) {
+    for (const bool upwards : {true, false}) {
+      Real distance = farthest;
+      for (std::size_t i = 0; i < rows; ++i) {
+        const std::size_t at = (upwards ? i : rows - 1 - i) * columns + column;
+        distance = marked[at] ? Real{0} : std::min(distance + step, farthest);
+        distances[at] = std::min(distances[at], distance);
+      }
+    }
+  });
+  parallel_for(rows, [&](std::size_t row) {
+    const auto first = distances.begin() + static_cast<std::ptrdiff_t>(row * columns), last = first + width;
+    if (std::all_of(first, last, [&](Real d) { return d >= farthest; })) return;
+    std::vector<double> squared(columns);
+    std::transform(first, last, squared.begin(), [&](Real d) { return d < farthest ? double{d} * double{d} : kInfinity; });
+    squared = lower_envelope(squared, cell.x);
+    std::transform(squared.begin(), squared.end(), first,
+                   [&](double s) { return std::min(static_cast<Real>(std::sqrt(s)), farthest); });
+  });
+  return distances;
+}
+
+template std::vector<float> distance_to_marked(int, int, const Vec2&, const std::vector<char>&, float);
+template std::vector<double> distance_to_marked(int, int, const Vec2&, const std::vector<char>&, double);
+
+}  // namespace outcrop
