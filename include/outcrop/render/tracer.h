@@ -50,7 +50,7 @@ struct TracerOptions {
   double spread = 1e-3;      ///< Of the rays that leave the eye.
   Vec3 view{0, 1, 0};        ///< Unit; leaves outside the cone around it are coarser.
   double view_angle = 0.5;   ///< Half the cone's angle, radians.
-  std::size_t max_leaves = 1'200'000;  ///< About: near it, leaves stay larger. Some 500 bytes each.
+  std::size_t max_leaves = 1'200'000;  ///< About: near it, leaves stay larger. Some 1.7 kB each.
 };
 
 /// The field inside a region, ready for rays: an octree of boxes that `bound` could not exclude, each with its narrowed
