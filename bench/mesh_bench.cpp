@@ -1,12 +1,9 @@
 /// Triangles per second of the mesher, with roots and normals: uniform and adaptive cells, on fields that cost next to
-/// nothing and on a fractured tile, beside OpenVDB on the same tile.
+/// nothing and on a fractured tile.
 ///
 /// Counters: `triangles`; `triangles/s` by the processor time of all threads; `error_mean` and `error_rms`, in finest
 /// cells, of points on the triangles; `fewer`: triangles of uniform cells over those of adaptive ones.
 #include <benchmark/benchmark.h>
-#include <openvdb/openvdb.h>
-#include <openvdb/tools/SignedFloodFill.h>
-#include <openvdb/tools/VolumeToMesh.h>
 
 #include <algorithm>
 #include <array>
@@ -136,57 +133,10 @@ outcrop::Box tile_region() { return {Vec3(-2.0), Vec3(kTileSide + 2.0)}; }
 void mesh_tile(benchmark::State& state, double tolerance) {
   const outcrop::ThreadLimit limit(static_cast<int>(state.range(1)));
   const FieldPtr& field = tile(state.range(0) != 0);
-  const PolygonizeOptions options{.region = tile_region(), .resolution = 0.1, .tolerance = tolerance, .keep_voids = true};
+  const PolygonizeOptions options{
+      .region = tile_region(), .resolution = 0.1, .tolerance = tolerance, .keep_voids = true};
   std::size_t triangles = 0;
   for (auto _ : state) triangles = outcrop::polygonize(*field, options).mesh.triangles.size();
-  report(state, triangles);
-}
-
-/// Fills leaves of 8³ voxels along the surface, narrowing on the way down as the mesher does.
-void fill(openvdb::FloatGrid::Accessor& grid, const outcrop::Field& field, const openvdb::Coord& first, int size,
-          double voxel) {
-  constexpr double kBand = 3.0;
-  const Vec3 lo = tile_region().lo + voxel * Vec3(first.x(), first.y(), first.z());
-  const outcrop::Box box{lo, lo + voxel * Vec3(size)};
-  const outcrop::Interval bound = field.bound(box);
-  if (bound.lo > kBand * voxel || bound.hi < -kBand * voxel) return;
-  const FieldPtr narrowed = field.narrow(box);
-  if (size > 8) {
-    for (int c = 0; c < 8; ++c)
-      fill(grid, *narrowed, first.offsetBy(c & 1 ? size / 2 : 0, c & 2 ? size / 2 : 0, c & 4 ? size / 2 : 0), size / 2,
-           voxel);
-    return;
-  }
-  std::array<double, 512> x, y, z, f;
-  for (int i = 0; i < 512; ++i) {
-    // A leaf's values run along z first.
-    x[i] = lo.x + voxel * (i / 64);
-    y[i] = lo.y + voxel * (i / 8 % 8);
-    z[i] = lo.z + voxel * (i % 8);
-  }
-  narrowed->values({x, y, z}, f, {});
-  auto* leaf = grid.touchLeaf(first);
-  for (int i = 0; i < 512; ++i)
-    if (std::abs(f[i]) < kBand * voxel) leaf->setValueOn(i, static_cast<float>(f[i]));
-}
-
-void mesh_tile_with_openvdb(benchmark::State& state) {
-  const outcrop::ThreadLimit limit(1);
-  openvdb::initialize();
-  const FieldPtr& field = tile(state.range(0) != 0);
-  constexpr double kVoxel = 0.1;
-  std::size_t triangles = 0;
-  for (auto _ : state) {
-    const auto grid = openvdb::FloatGrid::create(3.0f * static_cast<float>(kVoxel));
-    grid->setTransform(openvdb::math::Transform::createLinearTransform(kVoxel));
-    auto accessor = grid->getAccessor();
-    fill(accessor, *field, openvdb::Coord(0), 256, kVoxel);
-    openvdb::tools::signedFloodFill(grid->tree());
-    std::vector<openvdb::Vec3s> points;
-    std::vector<openvdb::Vec4I> quads;
-    openvdb::tools::volumeToMesh(*grid, points, quads);
-    triangles = 2 * quads.size();
-  }
   report(state, triangles);
 }
 
@@ -281,13 +231,13 @@ BENCHMARK_CAPTURE(mesh_tile, adaptive, 0.05)
     ->Args({1, 1})
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime();
-BENCHMARK(mesh_tile_with_openvdb)
-    ->ArgNames({"warp"})
-    ->Arg(0)
+BENCHMARK(adaptivity)
+    ->ArgNames({"tolerance_percent"})
     ->Arg(1)
+    ->Arg(4)
+    ->Arg(10)
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime();
-BENCHMARK(adaptivity)->ArgNames({"tolerance_percent"})->Arg(1)->Arg(4)->Arg(10)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
 BENCHMARK(budget)->ArgNames({"wanted"})->Arg(200'000)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
 
 // Arguments: cells along the region, threads. CPU time of all threads, so that rates are those of one core.
