@@ -71,7 +71,8 @@ void contradiction(const Vec3& where) {
   char place[96];
   std::snprintf(place, sizeof place, "(%.9g, %.9g, %.9g)", where.x, where.y, where.z);
   throw ParameterError(
-      std::string("field: expected bound and narrow that agree with its values, got boxes that disagree near ") + place);
+      std::string("field: expected bound and narrow that agree with its values, got boxes that disagree near ") +
+      place);
 }
 
 Chunk ChunkBuilder::build(const Cell& cell, int level) {
@@ -193,7 +194,8 @@ std::uint32_t ChunkBuilder::half_vertex(const Brick& brick, const HalfEdge& edge
     const int axis = d.x == 2 ? 0 : d.y == 2 ? 1 : 2;
     return vertex_[axis * kNodes + a.x / 2 + 9 * (a.y / 2) + 81 * (a.z / 2)];
   }
-  std::uint32_t& vertex = half_vertices_[static_cast<std::uint64_t>(edge[0]) << 16 | static_cast<std::uint64_t>(edge[1])];
+  std::uint32_t& vertex =
+      half_vertices_[static_cast<std::uint64_t>(edge[0]) << 16 | static_cast<std::uint64_t>(edge[1])];
   if (vertex != 0) return vertex - 1;
   int planes = 0;
   for (int axis = 0; axis < 3; ++axis)

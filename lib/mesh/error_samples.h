@@ -28,8 +28,8 @@ class ErrorSamples {
   std::vector<Sample> samples_;
 };
 
-/// Bricks between larger and smaller ones are smaller than their own error asks for: by so much are there more triangles,
-/// seen on rough ground.
+/// Bricks between larger and smaller ones are smaller than their own error asks for: by so much are there more
+/// triangles, seen on rough ground.
 inline constexpr double kBalance = 1.1;
 
 }  // namespace outcrop::meshing

@@ -77,7 +77,8 @@ struct Cell {
 
 /// The up to eight children, in Morton order, of a cell at `level` > 0 that the bound cannot exclude; `narrowed` is
 /// the field in that cell.
-[[nodiscard]] std::vector<Cell> children(const Lattice& lattice, const IVec3& index, int level, const FieldPtr& narrowed);
+[[nodiscard]] std::vector<Cell> children(const Lattice& lattice, const IVec3& index, int level,
+                                         const FieldPtr& narrowed);
 /// The same, narrowing the cell's field first.
 [[nodiscard]] std::vector<Cell> split(const Lattice& lattice, const Cell& cell, int level);
 

@@ -41,7 +41,8 @@ void feed(const TriangleMesh& mesh, MeshSink& sink) {
   std::vector<std::uint32_t> numbers(mesh.positions.size());
   std::iota(numbers.begin(), numbers.end(), 0u);
   const Label largest = mesh.labels.empty() ? Label{0} : *std::max_element(mesh.labels.begin(), mesh.labels.end());
-  sink.begin({mesh.origin, mesh.positions.size(), mesh.triangles.size(), !mesh.normals.empty(), !mesh.labels.empty(), largest});
+  sink.begin({mesh.origin, mesh.positions.size(), mesh.triangles.size(), !mesh.normals.empty(), !mesh.labels.empty(),
+              largest});
   sink.add({mesh.positions, mesh.normals, mesh.labels, numbers, 0, mesh.triangles});
   sink.end();
 }

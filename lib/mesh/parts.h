@@ -16,7 +16,7 @@ namespace outcrop::meshing {
 
 /// What there is to know about a part, or about a piece of one.
 struct Part {
-  Vec3 origin{0.0};   ///< A vertex of the part: volumes are taken about it, so that a small part far out keeps its digits.
+  Vec3 origin{0.0};   ///< A vertex of the part: volumes are taken about it, so that small parts far out keep digits.
   double volume = 0.0;
   Vec3 area{0.0};     ///< Sum of the triangles' normals times areas: what moves `volume` to another origin.
   Box box;

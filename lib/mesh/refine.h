@@ -15,10 +15,10 @@ namespace outcrop::meshing {
 /// How far the surface in a brick lies from what the brick's nodes make of it.
 class BrickError {
  public:
-  /// @return about how many metres marching cubes in this brick would be off: sampled on its triangles, more densely the
-  /// coarser the brick, and where surface hides between nodes of one sign, since values along the lattice's lines head
-  /// for 0 from both sides. Stops when that is more than `enough`. `field` is narrowed to the brick; `values` are the
-  /// brick's.
+  /// @return about how many metres marching cubes in this brick would be off: sampled on its triangles, more densely
+  /// the coarser the brick, and where surface hides between nodes of one sign, since values along the lattice's lines
+  /// head for 0 from both sides. Stops when that is more than `enough`. `field` is narrowed to the brick; `values` are
+  /// the brick's.
   double measure(double enough, const Lattice& lattice, const Field& field, const Brick& brick,
                  const BrickValues& values);
   /// The same for the triangles of each octant of the brick measured last, sampled once a triangle.

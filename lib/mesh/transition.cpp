@@ -217,8 +217,8 @@ bool TransitionCells::sample(const Lattice& lattice, const Field& field, const B
       if (face.finer) want(face.centre);
     });
   evaluate(lattice, field, brick);
-  // Middles of other faces, and of cells: whether they are rock counts where the nodes around them differ; elsewhere they
-  // are what those are, even if a look would show something else. Both cells at a face see the same.
+  // Middles of other faces, and of cells: whether they are rock counts where the nodes around them differ; elsewhere
+  // they are what those are, even if a look would show something else. Both cells at a face see the same.
   for (const IVec3& cell : cells_)
     for_each_face(cell, finer, [&](const FaceNodes& face) {
       if (face.fan() && mixed(face)) want(face.centre);

@@ -26,11 +26,11 @@ using HalfEdge = std::array<int, 2>;
 
 /// The surface in the cells of one brick that share a face or an edge with finer cells.
 ///
-/// Such a cell is the union of cones from its centre over its faces. A face shared with finer cells is four squares, and
-/// carries four pyramids; a face with a divided edge is a fan of triangles around its middle, and carries tetrahedra;
-/// any other face is one square and carries one pyramid. Both cells that share a face cut it alike, so what they draw on
-/// it is the same; each piece is convex, so what is in different pieces does not meet. Where the nodes around
-/// a middle agree, it counts as one of them.
+/// Such a cell is the union of cones from its centre over its faces. A face shared with finer cells is four squares,
+/// and carries four pyramids; a face with a divided edge is a fan of triangles around its middle, and carries
+/// tetrahedra; any other face is one square and carries one pyramid. Both cells that share a face cut it alike, so what
+/// they draw on it is the same; each piece is convex, so what is in different pieces does not meet. Where the nodes
+/// around a middle agree, it counts as one of them.
 class TransitionCells {
  public:
   TransitionCells();

@@ -75,8 +75,8 @@ std::uint8_t srgb_byte(float linear) {
   return static_cast<std::uint8_t>(std::lround(255.0f * encoded));
 }
 
-/// The parts of a file that come one after another: the first is written as it comes, the others wait until those before
-/// them are whole.
+/// The parts of a file that come one after another: the first is written as it comes, the others wait until those
+/// before them are whole.
 class Writer : public MeshSink {
  public:
   Writer(const std::filesystem::path& path, MeshMetadata metadata, const Task& task)

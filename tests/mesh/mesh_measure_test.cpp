@@ -31,7 +31,8 @@ TEST(MeshMeasure, AgreesWithTheCheckOfTheWholeMesh) {
 }
 
 TEST(MeshMeasure, FindsAMissingAndATurnedTriangle) {
-  const TriangleMesh whole = polygonize(*sphere(Vec3(0.0), 1.0), {.region = {Vec3(-1.5), Vec3(1.5)}, .resolution = 0.25}).mesh;
+  const PolygonizeOptions options{.region = {Vec3(-1.5), Vec3(1.5)}, .resolution = 0.25};
+  const TriangleMesh whole = polygonize(*sphere(Vec3(0.0), 1.0), options).mesh;
   MeshMeasure measure;
   feed(whole, measure);
   EXPECT_TRUE(measure.closed());

@@ -42,7 +42,7 @@ struct CellShape {
   [[nodiscard]] bool share_face(int edge_a, int edge_b) const noexcept;
 
   [[nodiscard]] static CellShape cube();         ///< Corner x + 2y + 4z; edges as cube_edge.
-  [[nodiscard]] static CellShape pyramid();      ///< Corners 0 to 3: a unit square seen from below; 4: half a unit above.
+  [[nodiscard]] static CellShape pyramid();      ///< Corners 0 to 3: a unit square from below; 4: half a unit above.
   [[nodiscard]] static CellShape tetrahedron();  ///< Corners 0, 1, 2 counter-clockwise seen from outside.
 };
 

@@ -28,11 +28,12 @@ enum class Parts {
 inline constexpr int kMaxLevels = 8;
 
 struct PolygonizeOptions {
-  /// World, finite, not empty. Its lattice starts at lo; hi is moved out to whole cells. With a tolerance, hi.z alone is,
-  /// and to whole coarsest cells, while cells shrink sideways by up to a sixteenth to end at hi.x and hi.y.
+  /// World, finite, not empty. Its lattice starts at lo; hi is moved out to whole cells. With a tolerance, hi.z alone
+  /// is, and to whole coarsest cells, while cells shrink sideways by up to a sixteenth to end at hi.x and hi.y.
   Box region;
   double resolution = 0.25;  ///< Edge of the finest cells in metres, > 0.
-  double tolerance = 0.0;    ///< Metres, ≥ 0: how far triangles may lie off the surface where cells are not finest; 0: all are.
+  double tolerance = 0.0;    ///< Metres, ≥ 0: how far triangles may lie off the surface where cells are not finest;
+                             ///< 0: all are.
   int levels = 4;            ///< Cells are up to 2^levels times as long as the finest, 0 to 8; with a tolerance.
   std::size_t triangles = 0;  ///< About how many are wanted; 0: as many as it takes. Decides the tolerance, and the
                               ///< resolution where all finest cells would not do.
@@ -50,9 +51,9 @@ struct PolygonizeStatistics {
   std::size_t evaluations = 0;    ///< Field values computed.
   std::size_t parts_removed = 0;  ///< Floating parts.
   std::size_t voids_removed = 0;
-  Vec3 extent{0.0};               ///< Of what was meshed, from region.lo on: the region moved out to whole cells, metres.
+  Vec3 extent{0.0};  ///< Of what was meshed, from region.lo on: the region moved out to whole cells, metres.
   double resolution = 0.0, tolerance = 0.0;  ///< As they were, or as the wanted number of triangles made them.
-  std::array<std::size_t, kMaxLevels + 1> bricks{};  ///< Of 8³ cells that the surface crosses, by level; 0 is the finest.
+  std::array<std::size_t, kMaxLevels + 1> bricks{};  ///< Of 8³ cells that the surface crosses, by level; 0: finest.
 };
 
 struct PolygonizeResult {
@@ -66,11 +67,11 @@ struct PolygonizeResult {
 /// Marching cubes on one integer lattice with searched tables, over bricks of 8³ cells that `bound` cannot exclude and
 /// in which the field is narrowed. With a tolerance the bricks form an octree, whose neighbours differ by one level at
 /// most; cells beside finer ones are coned from their centres, so there is no crack, skirt or T-junction. Where bricks
-/// are split depends on the field and the lattice alone. Features thinner than a cell show
-/// where a node of the lattice falls into them. Vertices lie on the surface to within a thousandth of their cell where f
-/// is smooth, and to within a fiftieth where it passes that close to a node of the lattice, so that no triangle
-/// degenerates. The mesh's origin is region.lo. The same bytes for any number of threads. Cost: O(cells crossed)
-/// evaluations; memory O(triangles).
+/// are split depends on the field and the lattice alone. Features thinner than a cell show where a node of the lattice
+/// falls into them. Vertices lie on the surface to within a thousandth of their cell where f is smooth, and to within a
+/// fiftieth where it passes that close to a node of the lattice, so that no triangle degenerates. The mesh's origin is
+/// region.lo. The same bytes for any number of threads. Cost: O(cells crossed) evaluations; memory O(triangles). Why it
+/// is so: docs/decisions/mesher.md.
 /// @throws ParameterError also when the field's bound or narrow contradict its values; Cancelled.
 [[nodiscard]] PolygonizeResult polygonize(const Field& field, const PolygonizeOptions& options, const Task& task = {});
 
@@ -88,7 +89,7 @@ struct MeshPiece {
   std::span<const Vec3f> normals;            ///< One a vertex, or empty.
   std::span<const Label> labels;             ///< One a vertex, or empty.
   std::span<const std::uint32_t> numbers;    ///< Of each vertex in the whole mesh.
-  std::uint32_t first_number = 0;            ///< Vertices of lower numbers came with earlier pieces; others are in order.
+  std::uint32_t first_number = 0;  ///< Vertices of lower numbers came with earlier pieces; others are in order.
   std::span<const std::array<std::uint32_t, 3>> triangles;  ///< Of the piece's vertices.
 };
 
