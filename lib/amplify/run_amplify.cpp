@@ -31,8 +31,8 @@ constexpr std::size_t kBytesASquare = 4 << 20; // Of 64² cells while they are m
 constexpr double kMostTriangles = 8e9;        // Vertices are numbered by 32 bits.
 
 // What one core does, measured on the canyon of the demo; for --dry-run only.
-constexpr double kTrianglesASecond = 100e3;
-constexpr double kPreviewPixelsASecond = 2e3;
+constexpr double kTrianglesASecond = 400e3;
+constexpr double kPreviewPixelsASecond = 10e3;
 constexpr double kLevelSetCellsASecond = 100e3;  // 77 to 118 thousand at 0.15 to 0.4 m; cells of the closed surface.
 
 /// A sensible line for files: what was made from what, without paths or thread counts, so that runs compare to the byte.
