@@ -46,7 +46,7 @@ int main(int argc, char** argv) {
   app.add_option("--resolution", run.resolution, "Edge of the mesh's cells, metres; default: a twelfth of a block");
   app.add_option("--tolerance", run.tolerance,
                  "Metres that triangles may lie off the surface where cells are wider than the resolution; 0: none is; "
-                 "default: a tenth of the resolution");
+                 "default: a tenth of the resolution where less than half of the ground is steep, else 0");
   app.add_option("--triangles", run.triangles, "About as many triangles as are wanted, instead of a tolerance");
   app.add_flag("--solid", run.solid, "Close the sheet with walls and a floor");
   app.add_option("--seed", run.seed, "Same seed, same rock")->capture_default_str();

@@ -25,6 +25,7 @@ constexpr double kCameraTurn = radians(25);   // Off the fall line: walls seen a
 constexpr double kCameraRise = 0.35;          // Height over distance of the default camera.
 constexpr int kFocusSamples = 192;            // Across the region, to find its steepest part.
 constexpr double kTolerance = 0.1;            // Of the resolution: below what shading shows.
+constexpr double kSteepShare = 0.5;           // Of a region; above it coarse cells save less than the search for them costs.
 constexpr double kLeastBytesACell = 60.0;     // Two triangles and their share of vertices: below what meshing takes.
 constexpr double kMemoryShare = 0.5;          // Of the limit: larger meshes wait on disk while they are made.
 constexpr std::size_t kBytesASquare = 4 << 20; // Of 64² cells while they are meshed, twice what was measured on rock.
@@ -73,6 +74,18 @@ Heightfield resampled(const Heightfield& heightfield, const Vec2& lo, const Vec2
                                         : static_cast<float>(heightfield.at(p.x, p.y).h));
     }
   return any ? Heightfield(std::move(grid)) : heightfield;
+}
+
+/// The share of a rectangle where the ground is steeper than `slope`.
+double steep_share(const Heightfield& heightfield, const Vec2& lo, const Vec2& hi, double slope) {
+  int steep = 0;
+  for (int j = 0; j < kFocusSamples; ++j)
+    for (int i = 0; i < kFocusSamples; ++i) {
+      const Vec2 p = lo + (hi - lo) * (Vec2(i, j) + 0.5) / double(kFocusSamples);
+      const Heightfield::Sample s = heightfield.at(p.x, p.y);
+      steep += std::hypot(s.hx, s.hy) >= std::tan(slope);
+    }
+  return double(steep) / (kFocusSamples * kFocusSamples);
 }
 
 /// Lengths of materials whose tile the terrain decides: only now can they be held against it.
@@ -264,6 +277,10 @@ class Runner {
     const Window window = choose_window(*report_.heightfield, report_.rock, run_);
     if (!window.note.empty()) note(window.note);
     report_.options = {window.lo, window.hi, window.resolution, run_.seed};
+    tolerance_ = run_.tolerance.value_or(0.0);
+    if (!run_.tolerance &&
+        steep_share(*report_.heightfield, window.lo, window.hi, report_.rock.placement.slope) < kSteepShare)
+      tolerance_ = kTolerance * window.resolution;
     check_memory(window);
     report_.amplified = amplify(*report_.heightfield, report_.rock, report_.options, task_);
     report_.seconds.tiles = amplified().tile_seconds;
@@ -299,7 +316,7 @@ class Runner {
   [[nodiscard]] PolygonizeOptions mesh_options() const {
     return {.region = amplified().region,
             .resolution = report_.options.resolution,
-            .tolerance = run_.tolerance.value_or(kTolerance * report_.options.resolution),
+            .tolerance = tolerance_,
             .triangles = run_.triangles,
             .border = run_.solid ? Border::Closed : Border::Open,
             .parts = Parts::Grounded,
@@ -410,6 +427,7 @@ class Runner {
   const Task& task_;
   AmplifyReport report_;
   Expectation expected_;
+  double tolerance_ = 0.0;  ///< Of the mesh, metres.
   Stopwatch watch_, total_;
   std::vector<std::string> waiting_;
   bool accepted_ = false;

@@ -1,6 +1,7 @@
 #include "budget.h"
 
 #include <cmath>
+#include <limits>
 
 namespace outcrop::meshing {
 namespace {
@@ -20,7 +21,7 @@ PolygonizeOptions with_levels(PolygonizeOptions options) {
 }  // namespace
 
 TriangleBudget::TriangleBudget(const Field& field, const PolygonizeOptions& options, const Task& task)
-    : options_(with_levels(options)), samples_(field, Lattice::over(options_), task),
+    : options_(with_levels(options)), samples_(field, Lattice::over(options_), std::numeric_limits<double>::infinity(), task),
       wanted_(static_cast<double>(options.triangles)) {
   fit();
 }

@@ -38,7 +38,7 @@ void thin_out(std::vector<Branch>& branches, int level) {
 
 }  // namespace
 
-ErrorSamples::ErrorSamples(const Field& field, const Lattice& lattice, const Task& task) {
+ErrorSamples::ErrorSamples(const Field& field, const Lattice& lattice, double largest, const Task& task) {
   struct Found {
     Sample sample;
     std::vector<Cell> below;
@@ -58,7 +58,7 @@ ErrorSamples::ErrorSamples(const Field& field, const Lattice& lattice, const Tas
           ++found.sample.cells;
           found.sample.triangles += CaseTable::cube()[cube_case].size();
         });
-        found.sample.error = level == 0 ? 0.0 : BrickError().measure(kUnlimited, lattice, *narrowed, brick, values);
+        found.sample.error = level == 0 ? 0.0 : BrickError().measure(largest, lattice, *narrowed, brick, values);
       }
       if (level > 0) found.below = children(lattice, b.cell.index, level, narrowed);
       return found;

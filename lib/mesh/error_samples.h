@@ -12,7 +12,8 @@ namespace outcrop::meshing {
 /// leaves. The sums lack what balance splits. Cost: below a second.
 class ErrorSamples {
  public:
-  ErrorSamples(const Field& field, const Lattice& lattice, const Task& task);
+  /// @param largest  Tolerance that will be asked for; errors beyond it are not measured to their end, which is dear.
+  ErrorSamples(const Field& field, const Lattice& lattice, double largest, const Task& task);
 
   struct Counts {
     double cells = 0.0, triangles = 0.0;

@@ -25,7 +25,7 @@ constexpr std::size_t kBytesATriangle = sizeof(std::array<std::uint32_t, 3>) + s
 
 PolygonizeEstimate estimate(const Field& field, const PolygonizeOptions& options, const Task& task) {
   const Lattice lattice = Lattice::over(options);
-  const auto counts = ErrorSamples(field, lattice, task).expected(options.tolerance);
+  const auto counts = ErrorSamples(field, lattice, options.tolerance, task).expected(options.tolerance);
   const double balance = lattice.coarsest == 0 ? 1.0 : kBalance;
   const auto rounded = [](double n) { return static_cast<std::size_t>(std::llround(n)); };
   PolygonizeEstimate result{.cells = rounded(balance * counts.cells), .triangles = rounded(balance * counts.triangles)};

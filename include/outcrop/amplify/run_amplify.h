@@ -26,7 +26,8 @@ struct AmplifyRun {
   /// x0, y0, x1, y1: map coordinates where the heightmap is georeferenced, else metres from its south-west corner.
   std::optional<std::array<double, 4>> region;
   std::optional<double> resolution;               ///< Metres.
-  std::optional<double> tolerance;                ///< Metres off the surface where cells are not finest; 0: all are.
+  std::optional<double> tolerance;                ///< Metres off the surface where cells are not finest; 0: all are. Missing:
+                                                  ///< a tenth of the resolution where less than half of the ground is steep, else 0.
   std::size_t triangles = 0;                      ///< About as many as are wanted; 0: as it comes.
   bool solid = false;                             ///< Walls and a floor.
   Seed seed = 1;
