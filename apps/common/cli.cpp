@@ -10,6 +10,7 @@
 #include <cmath>
 #include <csignal>
 #include <cstdlib>
+#include <cstring>
 #include <exception>
 #include <iostream>
 #include <memory>
@@ -49,9 +50,12 @@ void handle_unless_ignored(void (*handler)(int)) {
 
 void write_error(std::string_view text) { (void)!::write(STDERR_FILENO, text.data(), text.size()); }
 
+// The program's name, known before libc has looked at it.
+const char* g_name = "";
+
 // Until `run` listens there is no file and nothing to wait for.
 extern "C" void leave_at_once(int) {
-  write_error(program_invocation_short_name);
+  write_error(g_name);
   write_error(": ");
   write_error(kInterruptedText);
   write_error("\n");
@@ -60,8 +64,14 @@ extern "C" void leave_at_once(int) {
 
 // The loader calls what stands in this section before the constructors of any library. While it maps and relocates
 // them, a tenth of a second, the kernel's own way applies: the signal ends the program without a word.
-extern "C" void listen_early() { handle_unless_ignored(leave_at_once); }
-[[gnu::section(".preinit_array"), gnu::used]] void (*const g_listen_early)() = listen_early;
+extern "C" void listen_early(int count, char** words, char**) {
+  if (count > 0) {
+    const char* const slash = std::strrchr(words[0], '/');
+    g_name = slash ? slash + 1 : words[0];
+  }
+  handle_unless_ignored(leave_at_once);
+}
+[[gnu::section(".preinit_array"), gnu::used]] void (*const g_listen_early)(int, char**, char**) = listen_early;
 
 // Set by the handler, which may run on any thread: libraries start threads before main that block no signal.
 sem_t g_arrived;
