@@ -16,6 +16,10 @@ int main(int argc, char** argv) {
   app.add_option("INPUT", run.input, "A scene (.json), a level set (.vdb) or a closed mesh (.ply, .obj, .stl)")->required();
   outcrop::cli::add_output_options(app, run.meshes, run.previews, run.width, run.height);
   app.add_option("--resolution", run.resolution, "Edge of the cells, metres; default: the region's longest side / 128");
+  app.add_option("--tolerance", run.tolerance,
+                 "Metres that triangles may lie off the surface where cells are wider than the resolution; 0: none is")
+      ->capture_default_str();
+  app.add_option("--triangles", run.triangles, "About as many triangles as are wanted, instead of a tolerance");
   std::optional<std::array<double, 6>> region;
   app.add_option("--region", region, "X0 Y0 Z0 X1 Y1 Z1, metres; default: the scene's, else where the solid is");
 

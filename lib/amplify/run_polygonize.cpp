@@ -57,6 +57,8 @@ PolygonizeOptions mesh_options(const PolygonizeRun& run, const Scene& scene) {
           number_text(kLeastLength) + " m to " + number_text(longest) + " m, the region's longest side", resolution);
   return {.region = *region,
           .resolution = resolution,
+          .tolerance = run.tolerance,
+          .triangles = run.triangles,
           .border = run.border,
           .parts = run.parts,
           .keep_voids = run.keep_voids,
