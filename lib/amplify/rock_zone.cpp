@@ -77,7 +77,7 @@ std::vector<char> steep_nodes(const Heightfield& heightfield, const Raster& rast
     const Vec2 p = fine.node(column, row);
     const Heightfield::Sample s = heightfield.at(p.x, p.y);
     steep[i] = s.hx * s.hx + s.hy * s.hy >= steepness && (!heightfield.has_holes() || heightfield.hole_distance(p.x, p.y) < 0.0);
-  }, task);
+  }, Task{.stop = task.stop});  // Progress counts the raster's own rows.
   std::vector<char> all_about(raster.count());
   raster.for_each_node([&](std::size_t i, int column, int row) {
     bool all = true;
