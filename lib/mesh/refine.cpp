@@ -20,12 +20,13 @@ constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
+void BrickError::start() {
+  for (std::vector<double>* values : {&x_, &y_, &z_, &slopes_}) values->clear();
+}
+
 double BrickError::hidden(double enough, const Lattice& lattice, const Field& field, const Brick& brick,
                           const BrickValues& values) {
-  x_.clear();
-  y_.clear();
-  z_.clear();
-  slopes_.clear();
+  start();
   const Vec3 first(brick.first());
   const double stride = 1 << brick.level;
   const IVec3 n = brick.cells;
@@ -165,10 +166,7 @@ double BrickError::measure(double enough, const Lattice& lattice, const Field& f
 double BrickError::buried(const Lattice& lattice, const Field& field, const Brick& brick, const BrickValues& values) {
   const int probes = std::min((1 << brick.level) / 4, kMostSubdivisions);
   if (probes == 0) return 0.0;
-  x_.clear();
-  y_.clear();
-  z_.clear();
-  slopes_.clear();
+  start();
   const Vec3 first(brick.first());
   const double stride = 1 << brick.level;
   const double reach = field.lipschitz() * 0.5 * stride * glm::length(lattice.step);

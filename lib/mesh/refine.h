@@ -27,6 +27,8 @@ class BrickError {
   [[nodiscard]] std::size_t evaluations() const noexcept { return evaluations_; }
 
  private:
+  /// Forgets the points that were gathered before.
+  void start();
   struct Vertex {
     Vec3 index;
     double value = 0.0;
