@@ -189,7 +189,7 @@ void PolytopeKernel::warped(int n, const float* x, const float* y, const float* 
     lanes::fold_hessians(planes, n, x, y, z, here);
   else
     lanes::fold_gradients(planes, n, x, y, z, here);
-  lanes::carve(warp_, relief_origin_, n, x, y, z, here.gradient, gradients != nullptr, carving);
+  (gradients ? lanes::carve_with_slopes : lanes::carve)(warp_, relief_origin_, n, x, y, z, here.gradient, carving);
   for (int i = 0; i < n; ++i) {
     qx[i] = x[i] + carving.step[i] * here.gradient[0][i];
     qy[i] = y[i] + carving.step[i] * here.gradient[1][i];
@@ -201,22 +201,9 @@ void PolytopeKernel::warped(int n, const float* x, const float* y, const float* 
     lanes::fold_values(planes, n, qx, qy, qz, there);
   std::copy_n(there.value, n, out);
   if (!gradients) return;
-  for (int i = 0; i < n; ++i) {
-    // ∇b = G + (u·G) ∇D + D H (I − u uᵀ) G / t, with everything that H multiplies gathered into one vector.
-    const Vec3f far{there.gradient[0][i], there.gradient[1][i], there.gradient[2][i]};
-    const Vec3f unit =
-        Vec3f{here.gradient[0][i], here.gradient[1][i], here.gradient[2][i]} * (1.0f / carving.length[i]);
-    const Vec3f by_g{carving.blend_by_g[0][i], carving.blend_by_g[1][i], carving.blend_by_g[2][i]};
-    const Vec3f by_p{carving.blend_by_p[0][i], carving.blend_by_p[1][i], carving.blend_by_p[2][i]};
-    const float along = glm::dot(unit, far);
-    const Vec3f bent =
-        along * (carving.fade_gain[i] * unit + carving.blend_gain[i] * by_g) + carving.step[i] * (far - along * unit);
-    const float xx = here.hessian[0][i], yy = here.hessian[1][i], zz = here.hessian[2][i];
-    const float yz = here.hessian[3][i], xz = here.hessian[4][i], xy = here.hessian[5][i];
-    gradients[i] = far + along * carving.blend_gain[i] * by_p +
-                   Vec3f{xx * bent.x + xy * bent.y + xz * bent.z, xy * bent.x + yy * bent.y + yz * bent.z,
-                         xz * bent.x + yz * bent.y + zz * bent.z};
-  }
+  lanes::Lane carved[3];
+  lanes::carved_gradients(n, here, there, carving, carved);
+  for (int i = 0; i < n; ++i) gradients[i] = {carved[0][i], carved[1][i], carved[2][i]};
 }
 
 Interval PolytopeKernel::bound(const TurnedBox& local) const noexcept {
