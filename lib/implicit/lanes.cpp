@@ -1,8 +1,10 @@
 #include "lanes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 
 #include "outcrop/core/simd.h"
 
@@ -11,6 +13,7 @@ namespace {
 
 // Stands for 1/0: any two different floats are further apart than a rounding of 0.
 constexpr float kSharp = 1e30f;
+constexpr double kNoCeiling = std::numeric_limits<double>::infinity();
 constexpr int kWidth = 16;
 /// Sixteen floats: one AVX-512 register, two of AVX2, four of SSE2. Lane by lane, so the bits are the same.
 using Vector [[gnu::vector_size(kWidth * sizeof(float))]] = float;
@@ -86,9 +89,10 @@ template <int Order, int Chains>
 }
 
 /// One point: the same operations, but a plane that cannot change anything, to the bit, is passed over. Shorter than a
-/// vector's chain of dependent steps, since most planes are.
+/// vector's chain of dependent steps, since most planes are. False as soon as the fold, which grows from plane to plane,
+/// is at the ceiling.
 template <int Order>
-inline void fold_one(const PlaneView& planes, int at, float x, float y, float z, Fold& out) {
+inline bool fold_one(const PlaneView& planes, double ceiling, int at, float x, float y, float z, Fold& out) {
   const float inverse = planes.rounding > 0.0f ? 1.0f / planes.rounding : kSharp;
   const float sixth = planes.rounding / 6.0f;
   float c = planes.nx[0] * x + planes.ny[0] * y + planes.nz[0] * z + planes.d[0];
@@ -96,15 +100,15 @@ inline void fold_one(const PlaneView& planes, int at, float x, float y, float z,
   for (int plane = 1; plane < planes.count; ++plane) {
     const float n[3] = {planes.nx[plane], planes.ny[plane], planes.nz[plane]};
     const float h = n[0] * x + n[1] * y + n[2] * z + planes.d[plane];
-    const bool above = h > c;
-    const float larger = above ? h : c, smaller = above ? c : h;
-    const float near = 1.0f - (larger - smaller) * inverse;
-    if (!(near > 0.0f) && !above) continue;
+    const float below = c - h;
+    if (below * inverse >= 1.0f) continue;
+    const float near = 1.0f - std::fabs(below) * inverse;
     const float k = near > 0.0f ? near : 0.0f;
-    c = larger + sixth * (k * k * k);
+    c = (below < 0.0f ? h : c) + sixth * (k * k * k);
+    if (static_cast<double>(c) >= ceiling) return false;
     if constexpr (Order >= 1) {
       const float half = 0.5f * (k * k);
-      const float wh = above ? 1.0f - half : half;
+      const float wh = below < 0.0f ? 1.0f - half : half;
       const float wa = 1.0f - wh;
       if constexpr (Order >= 2) {
         const float weight = k * inverse, dx = g[0] - n[0], dy = g[1] - n[1], dz = g[2] - n[2];
@@ -119,6 +123,11 @@ inline void fold_one(const PlaneView& planes, int at, float x, float y, float z,
     for (int axis = 0; axis < 3; ++axis) out.gradient[axis][at] = g[axis];
   if constexpr (Order >= 2)
     for (int entry = 0; entry < 6; ++entry) out.hessian[entry][at] = bend[entry];
+  return true;
+}
+template <int Order>
+inline void fold_few(const PlaneView& planes, int n, const float* x, const float* y, const float* z, Fold& out) {
+  for (int i = 0; i < n; ++i) fold_one<Order>(planes, kNoCeiling, i, x[i], y[i], z[i], out);
 }
 
 template <int Order>
@@ -165,17 +174,20 @@ void many_hessians(const PlaneView& planes, int n, const float* x, const float* 
 }  // namespace
 
 void fold_values(const PlaneView& planes, int n, const float* x, const float* y, const float* z, Fold& out) noexcept {
-  if (n > kFewPoints) return many_values(planes, n, x, y, z, out);
-  for (int i = 0; i < n; ++i) fold_one<0>(planes, i, x[i], y[i], z[i], out);
+  n > kFewPoints ? many_values(planes, n, x, y, z, out) : fold_few<0>(planes, n, x, y, z, out);
 }
 void fold_gradients(const PlaneView& planes, int n, const float* x, const float* y, const float* z,
                     Fold& out) noexcept {
-  if (n > kFewPoints) return many_gradients(planes, n, x, y, z, out);
-  for (int i = 0; i < n; ++i) fold_one<1>(planes, i, x[i], y[i], z[i], out);
+  n > kFewPoints ? many_gradients(planes, n, x, y, z, out) : fold_few<1>(planes, n, x, y, z, out);
 }
 void fold_hessians(const PlaneView& planes, int n, const float* x, const float* y, const float* z, Fold& out) noexcept {
-  if (n > kFewPoints) return many_hessians(planes, n, x, y, z, out);
-  for (int i = 0; i < n; ++i) fold_one<2>(planes, i, x[i], y[i], z[i], out);
+  n > kFewPoints ? many_hessians(planes, n, x, y, z, out) : fold_few<2>(planes, n, x, y, z, out);
+}
+bool fold_value_below(const PlaneView& planes, double ceiling, float x, float y, float z, Fold& out) noexcept {
+  return fold_one<0>(planes, ceiling, 0, x, y, z, out);
+}
+bool fold_gradient_below(const PlaneView& planes, double ceiling, float x, float y, float z, Fold& out) noexcept {
+  return fold_one<1>(planes, ceiling, 0, x, y, z, out);
 }
 
 }  // namespace outcrop::lanes

@@ -35,6 +35,13 @@ void fold_values(const PlaneView& planes, int n, const float* x, const float* y,
 void fold_gradients(const PlaneView& planes, int n, const float* x, const float* y, const float* z, Fold& out) noexcept;
 void fold_hessians(const PlaneView& planes, int n, const float* x, const float* y, const float* z, Fold& out) noexcept;
 
+/// The same at one point, as far as it is below `ceiling`: true, and element 0 of `out` is the fold; or false, and the
+/// fold is at least the ceiling.
+[[nodiscard]] bool fold_value_below(const PlaneView& planes, double ceiling, float x, float y, float z,
+                                    Fold& out) noexcept;
+[[nodiscard]] bool fold_gradient_below(const PlaneView& planes, double ceiling, float x, float y, float z,
+                                       Fold& out) noexcept;
+
 /// Where |∇c| is below `kFadeStart` nothing is carved; above `kFadeEnd` all is. A right-angled edge has |∇c| ≥ 1/√2 and
 /// is carved in full; the middle of a thin block, where opposite faces cancel, is not.
 inline constexpr float kFadeStart = 0.2f;

@@ -104,9 +104,22 @@ class PlanesOverBox {
 }
 
 [[nodiscard]] lanes::PlaneView view(const PackedPlanes& planes, float rounding) {
-  return {planes.nx(), planes.ny(), planes.nz(), planes.d(), static_cast<int>(planes.size()),
-          rounding};
+  return {planes.nx(), planes.ny(), planes.nz(), planes.d(), static_cast<int>(planes.size()), rounding};
 }
+
+/// Where carving takes points.
+struct Moved {
+  lanes::Lane x, y, z;
+
+  Moved(int n, const float* from_x, const float* from_y, const float* from_z, const lanes::Fold& fold,
+        const lanes::Carving& carving) {
+    for (int i = 0; i < n; ++i) {
+      x[i] = from_x[i] + carving.step[i] * fold.gradient[0][i];
+      y[i] = from_y[i] + carving.step[i] * fold.gradient[1][i];
+      z[i] = from_z[i] + carving.step[i] * fold.gradient[2][i];
+    }
+  }
+};
 
 }  // namespace
 
@@ -158,6 +171,21 @@ void PolytopeKernel::values(std::size_t n, const float* x, const float* y, const
   }
 }
 
+double PolytopeKernel::value_below(double ceiling, float x, float y, float z) const noexcept {
+  constexpr double kAbove = std::numeric_limits<double>::infinity();
+  const lanes::PlaneView planes = view(planes_, rounding_);
+  lanes::Fold fold;
+  // The relief only carves, but for rounding, and the caller may have rounded the ceiling.
+  const double top = ceiling + 2.0 * rounding_slack(std::abs(x) + std::abs(y) + std::abs(z));
+  if (!warp_.active()) return lanes::fold_value_below(planes, top, x, y, z, fold) ? fold.value[0] : kAbove;
+  if (!lanes::fold_gradient_below(planes, top, x, y, z, fold)) return kAbove;
+  lanes::Carving carving;
+  lanes::carve(warp_, relief_origin_, 1, &x, &y, &z, fold.gradient, carving);
+  const Moved q(1, &x, &y, &z, fold, carving);
+  lanes::fold_values(planes, 1, q.x, q.y, q.z, fold);
+  return fold.value[0];
+}
+
 void PolytopeKernel::folded(std::size_t n, const float* x, const float* y, const float* z, float* out) const noexcept {
   lanes::Fold fold;
   for (std::size_t first = 0; first < n; first += lanes::kLanes) {
@@ -184,23 +212,19 @@ void PolytopeKernel::warped(int n, const float* x, const float* y, const float* 
   const lanes::PlaneView planes = view(planes_, rounding_);
   lanes::Fold here, there;
   lanes::Carving carving;
-  lanes::Lane qx, qy, qz;
-  if (gradients)
-    lanes::fold_hessians(planes, n, x, y, z, here);
-  else
+  if (!gradients) {
     lanes::fold_gradients(planes, n, x, y, z, here);
-  (gradients ? lanes::carve_with_slopes : lanes::carve)(warp_, relief_origin_, n, x, y, z, here.gradient, carving);
-  for (int i = 0; i < n; ++i) {
-    qx[i] = x[i] + carving.step[i] * here.gradient[0][i];
-    qy[i] = y[i] + carving.step[i] * here.gradient[1][i];
-    qz[i] = z[i] + carving.step[i] * here.gradient[2][i];
+    lanes::carve(warp_, relief_origin_, n, x, y, z, here.gradient, carving);
+    const Moved q(n, x, y, z, here, carving);
+    lanes::fold_values(planes, n, q.x, q.y, q.z, there);
+    std::copy_n(there.value, n, out);
+    return;
   }
-  if (gradients)
-    lanes::fold_gradients(planes, n, qx, qy, qz, there);
-  else
-    lanes::fold_values(planes, n, qx, qy, qz, there);
+  lanes::fold_hessians(planes, n, x, y, z, here);
+  lanes::carve_with_slopes(warp_, relief_origin_, n, x, y, z, here.gradient, carving);
+  const Moved q(n, x, y, z, here, carving);
+  lanes::fold_gradients(planes, n, q.x, q.y, q.z, there);
   std::copy_n(there.value, n, out);
-  if (!gradients) return;
   lanes::Lane carved[3];
   lanes::carved_gradients(n, here, there, carving, carved);
   for (int i = 0; i < n; ++i) gradients[i] = {carved[0][i], carved[1][i], carved[2][i]};
