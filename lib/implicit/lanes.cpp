@@ -14,54 +14,68 @@ namespace {
 // Stands for 1/0: any two different floats are further apart than a rounding of 0.
 constexpr float kSharp = 1e30f;
 constexpr double kNoCeiling = std::numeric_limits<double>::infinity();
-constexpr int kWidth = 16;
-/// Sixteen floats: one AVX-512 register, two of AVX2, four of SSE2. Lane by lane, so the bits are the same.
-using Vector [[gnu::vector_size(kWidth * sizeof(float))]] = float;
+/// As many floats as a register holds. Lane by lane, so the bits are the same for any width.
+template <int Width>
+struct VectorOf {
+  using Floats [[gnu::vector_size(Width * sizeof(float))]] = float;
+  using Bits [[gnu::vector_size(Width * sizeof(float))]] = std::int32_t;
+};
+template <int Width>
+using Vector = typename VectorOf<Width>::Floats;
 
-[[gnu::always_inline]] inline Vector load(const float* from) {
-  Vector v;
+template <class V>
+[[gnu::always_inline]] inline V load(const float* from) {
+  V v;
   std::memcpy(&v, from, sizeof v);
   return v;
 }
-[[gnu::always_inline]] inline void store(float* to, const Vector& v) { std::memcpy(to, &v, sizeof v); }
-[[gnu::always_inline]] inline Vector larger_of(const Vector& a, const Vector& b) { return a > b ? a : b; }
-[[gnu::always_inline]] inline Vector absolute(const Vector& v) {
-  using Bits [[gnu::vector_size(sizeof(Vector))]] = std::int32_t;
-  return reinterpret_cast<Vector>(reinterpret_cast<Bits>(v) & 0x7fffffff);
+template <class V>
+[[gnu::always_inline]] inline void store(float* to, const V& v) {
+  std::memcpy(to, &v, sizeof v);
+}
+template <class V>
+[[gnu::always_inline]] inline V larger_of(const V& a, const V& b) {
+  return a > b ? a : b;
+}
+template <class V>
+[[gnu::always_inline]] inline V absolute(const V& v) {
+  using Bits = typename VectorOf<sizeof(V) / sizeof(float)>::Bits;
+  return reinterpret_cast<V>(reinterpret_cast<Bits>(v) & 0x7fffffff);
 }
 
 /// Order 0: values; 1: and gradients; 2: and Hessians. The same operations for the lower orders, so the same bits.
-/// Chains · 16 points at `first` of x, y, z; the accumulators stay in registers over all planes.
-template <int Order, int Chains>
+/// Chains · Width points at `first` of x, y, z; the accumulators stay in registers over all planes.
+template <int Order, int Width, int Chains>
 [[gnu::always_inline]] inline void fold_some(const PlaneView& planes, int first, const float* x, const float* y,
                                              const float* z, Fold& out) {
   const float inverse = planes.rounding > 0.0f ? 1.0f / planes.rounding : kSharp;
   const float sixth = planes.rounding / 6.0f;
-  Vector px[Chains], py[Chains], pz[Chains], c[Chains], gx[Chains], gy[Chains], gz[Chains], bend[Chains][6];
+  using V = Vector<Width>;
+  V px[Chains], py[Chains], pz[Chains], c[Chains], gx[Chains], gy[Chains], gz[Chains], bend[Chains][6];
   for (int j = 0; j < Chains; ++j) {
-    px[j] = load(x + first + j * kWidth);
-    py[j] = load(y + first + j * kWidth);
-    pz[j] = load(z + first + j * kWidth);
+    px[j] = load<V>(x + first + j * Width);
+    py[j] = load<V>(y + first + j * Width);
+    pz[j] = load<V>(z + first + j * Width);
     c[j] = planes.nx[0] * px[j] + planes.ny[0] * py[j] + planes.nz[0] * pz[j] + planes.d[0];
-    gx[j] = Vector{} + planes.nx[0];
-    gy[j] = Vector{} + planes.ny[0];
-    gz[j] = Vector{} + planes.nz[0];
-    for (Vector& entry : bend[j]) entry = Vector{};
+    gx[j] = V{} + planes.nx[0];
+    gy[j] = V{} + planes.ny[0];
+    gz[j] = V{} + planes.nz[0];
+    for (V& entry : bend[j]) entry = V{};
   }
   for (int plane = 1; plane < planes.count; ++plane) {
     const float nx = planes.nx[plane], ny = planes.ny[plane], nz = planes.nz[plane], d = planes.d[plane];
     for (int j = 0; j < Chains; ++j) {
-      const Vector h = nx * px[j] + ny * py[j] + nz * pz[j] + d;
-      const Vector a = c[j];
-      const Vector k = larger_of(1.0f - absolute(h - a) * inverse, Vector{});
+      const V h = nx * px[j] + ny * py[j] + nz * pz[j] + d;
+      const V a = c[j];
+      const V k = larger_of(1.0f - absolute(h - a) * inverse, V{});
       c[j] = larger_of(h, a) + sixth * (k * k * k);
       if constexpr (Order >= 1) {
         // Written as a weighted sum, not as g + w (n − g): with a weight of 0 the other side drops out to the bit.
-        const Vector half = 0.5f * (k * k);
-        const Vector wh = h > a ? 1.0f - half : half;
-        const Vector wa = 1.0f - wh;
+        const V half = 0.5f * (k * k);
+        const V wh = h > a ? 1.0f - half : half;
+        const V wa = 1.0f - wh;
         if constexpr (Order >= 2) {
-          const Vector dx = gx[j] - nx, dy = gy[j] - ny, dz = gz[j] - nz, weight = k * inverse;
+          const V dx = gx[j] - nx, dy = gy[j] - ny, dz = gz[j] - nz, weight = k * inverse;
           bend[j][0] = wa * bend[j][0] + weight * (dx * dx);
           bend[j][1] = wa * bend[j][1] + weight * (dy * dy);
           bend[j][2] = wa * bend[j][2] + weight * (dz * dz);
@@ -76,7 +90,7 @@ template <int Order, int Chains>
     }
   }
   for (int j = 0; j < Chains; ++j) {
-    const int at = first + j * kWidth;
+    const int at = first + j * Width;
     store(out.value + at, c[j]);
     if constexpr (Order >= 1) {
       store(out.gradient[0] + at, gx[j]);
@@ -130,46 +144,43 @@ inline void fold_few(const PlaneView& planes, int n, const float* x, const float
   for (int i = 0; i < n; ++i) fold_one<Order>(planes, kNoCeiling, i, x[i], y[i], z[i], out);
 }
 
-template <int Order>
+template <int Order, int Width>
 [[gnu::always_inline]] inline void fold_many(const PlaneView& planes, int n, const float* x, const float* y,
                                              const float* z, Fold& out) {
   alignas(64) Lane px, py, pz;  // The last vector may reach beyond the caller's points.
-  const int vectors = (n + kWidth - 1) / kWidth;
-  if (vectors * kWidth > n) {
+  const int vectors = (n + Width - 1) / Width;
+  if (vectors * Width > n) {
     const auto pad = [&](const float* from, Lane& to) {
-      std::fill(std::copy_n(from, n, to), to + vectors * kWidth, from[0]);
+      std::fill(std::copy_n(from, n, to), to + vectors * Width, from[0]);
       return to;
     };
     x = pad(x, px), y = pad(y, py), z = pad(z, pz);
   }
-  // As many chains at once as there are vectors; Hessians need so many registers that two are faster than four.
+  // Several chains of dependent steps at once, as far as there are vectors, and registers for what each carries along.
+  constexpr int kChains = Width == 16 ? (Order < 2 ? 4 : 2) : (Order == 0 ? 4 : 3 - Order);
   for (int done = 0; done < vectors;) {
-    const int left = vectors - done, first = done * kWidth;
-    if (Order < 2 && left >= 4) {
-      fold_some<Order, 4>(planes, first, x, y, z, out), done += 4;
-    } else if (Order < 2 && left == 3) {
-      fold_some<Order, 3>(planes, first, x, y, z, out), done += 3;
-    } else if (left >= 2) {
-      fold_some<Order, 2>(planes, first, x, y, z, out), done += 2;
+    const int left = vectors - done, first = done * Width;
+    if (left >= kChains) {
+      fold_some<Order, Width, kChains>(planes, first, x, y, z, out), done += kChains;
+    } else if (left == 3) {
+      fold_some<Order, Width, std::min(kChains, 3)>(planes, first, x, y, z, out), done += 3;
+    } else if (left == 2) {
+      fold_some<Order, Width, std::min(kChains, 2)>(planes, first, x, y, z, out), done += 2;
     } else {
-      fold_some<Order, 1>(planes, first, x, y, z, out), done += 1;
+      fold_some<Order, Width, 1>(planes, first, x, y, z, out), done += 1;
     }
   }
 }
 
-OUTCROP_SIMD_CLONES
-void many_values(const PlaneView& planes, int n, const float* x, const float* y, const float* z, Fold& out) noexcept {
-  fold_many<0>(planes, n, x, y, z, out);
-}
-OUTCROP_SIMD_CLONES
-void many_gradients(const PlaneView& planes, int n, const float* x, const float* y, const float* z,
-                    Fold& out) noexcept {
-  fold_many<1>(planes, n, x, y, z, out);
-}
-OUTCROP_SIMD_CLONES
-void many_hessians(const PlaneView& planes, int n, const float* x, const float* y, const float* z, Fold& out) noexcept {
-  fold_many<2>(planes, n, x, y, z, out);
-}
+OUTCROP_SIMD_WIDTHS(void many_values(const PlaneView& planes, int n, const float* x, const float* y, const float* z,
+                                     Fold& out) noexcept,
+                    fold_many<0, kWidth>(planes, n, x, y, z, out);)
+OUTCROP_SIMD_WIDTHS(void many_gradients(const PlaneView& planes, int n, const float* x, const float* y, const float* z,
+                                        Fold& out) noexcept,
+                    fold_many<1, kWidth>(planes, n, x, y, z, out);)
+OUTCROP_SIMD_WIDTHS(void many_hessians(const PlaneView& planes, int n, const float* x, const float* y, const float* z,
+                                       Fold& out) noexcept,
+                    fold_many<2, kWidth>(planes, n, x, y, z, out);)
 
 }  // namespace
 

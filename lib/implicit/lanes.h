@@ -30,7 +30,7 @@ struct PlaneView {
 };
 
 /// The fold of smax over the planes, in their order, at n <= kLanes points. A point's bits do not depend on n, on how
-/// much is asked for, or on the instruction set. `out` may be written up to the next multiple of 16.
+/// much is asked for, or on the instruction set. `out` may be written beyond n.
 void fold_values(const PlaneView& planes, int n, const float* x, const float* y, const float* z, Fold& out) noexcept;
 void fold_gradients(const PlaneView& planes, int n, const float* x, const float* y, const float* z, Fold& out) noexcept;
 void fold_hessians(const PlaneView& planes, int n, const float* x, const float* y, const float* z, Fold& out) noexcept;

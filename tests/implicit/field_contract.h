@@ -199,7 +199,9 @@ inline void check_between(const Field& field, const Box& box, Rng& rng) {
     Vec3 single_gradient = untouched;
     field.between(points.view().subspan(i, 1), {&floors[i], 1}, {&single, 1}, {&single_gradient, 1});
     ASSERT_EQ(single, got[i]) << "alone and in a batch, point " << i;
-    if (v > floors[i]) ASSERT_EQ(single_gradient, gradients[i]) << "alone and in a batch, point " << i;
+    if (v > floors[i]) {
+      ASSERT_EQ(single_gradient, gradients[i]) << "gradient alone and in a batch, point " << i;
+    }
     if (v <= floors[i]) continue;
     const Vec3 expected = v < ceilings[i] ? answers.gradients[i] : untouched;
     for (int axis = 0; axis < 3; ++axis)
