@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -23,6 +24,7 @@ constexpr float kRimSharpness = 2.0f;    // Where a rim bends, the true distance
 constexpr double kProbesPerCell = 2.0;   // Slopes looked at across a cell of the heightfield, at least,
 constexpr int kMostProbes = 4;           // … but no more than this many across a cell of the raster.
 constexpr double kCertainlySteep = 1.005;  // Times the threshold's tangent: between two probes the slope may dip.
+constexpr int kTile = 64;                // Nodes, across squares of the raster that are gentle as a whole or looked at.
 
 /// A raster of nodes over a rectangle, rows from the south.
 struct Raster {
@@ -41,6 +43,18 @@ struct Raster {
   [[nodiscard]] std::size_t neighbour(int column, int row, int dx, int dy) const {
     return index(std::clamp(column + dx, 0, width - 1), std::clamp(row + dy, 0, height - 1));
   }
+  /// Part of it: from node `first` to node `last`.
+  [[nodiscard]] Raster part(const IVec2& first, const IVec2& last) const {
+    return {last.x - first.x + 1, last.y - first.y + 1, node(first.x, first.y), spacing};
+  }
+  /// The part that holds all nodes of a rectangle and those around it.
+  [[nodiscard]] Raster around(const Vec2& from, const Vec2& to) const {
+    const IVec2 end(width - 1, height - 1);
+    const IVec2 first = glm::clamp(IVec2(glm::floor((from - lo) / spacing)), IVec2(0), end - 1);
+    const IVec2 last = glm::clamp(IVec2(glm::ceil((to - lo) / spacing)), first + 1, end);
+    return part(first, last);
+  }
+  [[nodiscard]] Vec2 hi() const { return node(width - 1, height - 1); }
   /// The node next to a position.
   [[nodiscard]] std::size_t nearest(const Vec2& p) const {
     const Vec2 at = glm::round((p - lo) / spacing);
@@ -65,6 +79,25 @@ struct Raster {
   }
 };
 
+/// Where the heightfield's bounds leave room for steep ground: a box around it, empty where they leave none.
+struct SteepPart {
+  Vec2 lo{std::numeric_limits<double>::infinity()}, hi{-std::numeric_limits<double>::infinity()};
+  [[nodiscard]] bool empty() const { return lo.x > hi.x; }
+};
+
+SteepPart steep_part(const Heightfield& heightfield, const Raster& raster, double slope) {
+  const double tangent = std::tan(slope), tile = kTile * raster.spacing;
+  SteepPart part;
+  for (int row = 0; row < raster.height; row += kTile)
+    for (int column = 0; column < raster.width; column += kTile) {
+      const Vec2 lo = raster.node(column, row), hi = glm::min(lo + tile, raster.hi());
+      if (heightfield.slope_bound(lo, hi) < tangent) continue;
+      part.lo = glm::min(part.lo, lo);
+      part.hi = glm::max(part.hi, hi);
+    }
+  return part;
+}
+
 /// Nodes about which all the ground is steep, as far as the raster's next cells: so that bilinear interpolation between nodes
 /// gives 0 wherever the ground is not.
 std::vector<char> steep_nodes(const Heightfield& heightfield, const Raster& raster, double slope, const Task& task) {
@@ -72,11 +105,20 @@ std::vector<char> steep_nodes(const Heightfield& heightfield, const Raster& rast
   const int probes = std::clamp(static_cast<int>(std::ceil(kProbesPerCell * raster.spacing / cell)), 1, kMostProbes);
   const Raster fine{(raster.width - 1) * probes + 1, (raster.height - 1) * probes + 1, raster.lo, raster.spacing / probes};
   const double steepness = std::pow(kCertainlySteep * std::tan(slope), 2.0);
+  const double tangent = std::tan(slope);
   std::vector<char> steep(fine.count());
-  fine.for_each_node([&](std::size_t i, int column, int row) {
-    const Vec2 p = fine.node(column, row);
-    const Heightfield::Sample s = heightfield.at(p.x, p.y);
-    steep[i] = s.hx * s.hx + s.hy * s.hy >= steepness && (!heightfield.has_holes() || heightfield.hole_distance(p.x, p.y) < 0.0);
+  parallel_for(static_cast<std::size_t>(fine.height), [&](std::size_t row) {
+    for (int first = 0; first < fine.width; first += kTile) {
+      const int end = std::min(first + kTile, fine.width);
+      const int y = static_cast<int>(row);
+      if (heightfield.slope_bound(fine.node(first, y), fine.node(end - 1, y)) < tangent) continue;
+      for (int column = first; column < end; ++column) {
+        const Vec2 p = fine.node(column, y);
+        const Heightfield::Sample s = heightfield.at(p.x, p.y);
+        steep[fine.index(column, y)] = s.hx * s.hx + s.hy * s.hy >= steepness &&
+                                       (!heightfield.has_holes() || heightfield.hole_distance(p.x, p.y) < 0.0);
+      }
+    }
   }, Task{.stop = task.stop});  // Progress counts the raster's own rows.
   std::vector<char> all_about(raster.count());
   raster.for_each_node([&](std::size_t i, int column, int row) {
@@ -120,21 +162,25 @@ std::vector<float> distance_to_rim(const Raster& raster, const std::vector<char>
   return distance;
 }
 
-struct Offset {
+/// A node near by, and how much of its height counts: all within a radius, none a node beyond it.
+struct Neighbour {
   int dx, dy;
-  double distance;
+  float recess, advance;
 };
 
-/// Raster offsets within `radius`.
-std::vector<Offset> disc_offsets(double radius, double spacing) {
-  const int reach = static_cast<int>(std::ceil(radius / spacing));
-  std::vector<Offset> offsets;
+/// The nodes within two radii.
+std::vector<Neighbour> disc(double recess_radius, double advance_radius, double spacing) {
+  const int reach = static_cast<int>(std::ceil(std::max(recess_radius, advance_radius) / spacing));
+  std::vector<Neighbour> nodes;
   for (int dy = -reach; dy <= reach; ++dy)
     for (int dx = -reach; dx <= reach; ++dx) {
-      const double distance = spacing * std::hypot(dx, dy);
-      if (distance <= radius + spacing) offsets.push_back({dx, dy, distance});
+      const auto weight = [distance = spacing * std::hypot(dx, dy), spacing](double radius) {
+        return static_cast<float>(std::clamp(1.0 + (radius - distance) / spacing, 0.0, 1.0));
+      };
+      const Neighbour n{dx, dy, weight(recess_radius), weight(advance_radius)};
+      if (n.recess > 0.0f || n.advance > 0.0f) nodes.push_back(n);
     }
-  return offsets;
+  return nodes;
 }
 
 /// How far the ground falls and rises within the reach.
@@ -143,26 +189,35 @@ struct Envelopes {
 };
 
 template <class Near, class Reach>
-Envelopes make_envelopes(const Heightfield& heightfield, const Raster& raster, double recess, double largest_radius,
-                         const Near& near, const Reach& reach_at, const Task& task) {
+Envelopes make_envelopes(const Heightfield& heightfield, const Raster& raster, double recess, const Near& near,
+                         const Reach& reach_at, const Task& task) {
   std::vector<float> ground(raster.count()), fall(raster.count(), 0.0f), rise(raster.count(), 0.0f);
   raster.for_each_node([&](std::size_t i, int column, int row) {
     const Vec2 p = raster.node(column, row);
     ground[i] = static_cast<float>(heightfield.at(p.x, p.y).h);
   });
-  const std::vector<Offset> offsets = disc_offsets(largest_radius, raster.spacing);
-  raster.for_each_node([&](std::size_t i, int column, int row) {
-    const Vec2 p = raster.node(column, row);
-    if (!near(p)) return;
-    const double advance_radius = reach_at(p), recess_radius = recess * advance_radius;
-    for (const Offset& o : offsets) {
-      const auto weight = [&](double radius) {
-        return static_cast<float>(std::clamp(1.0 + (radius - o.distance) / raster.spacing, 0.0, 1.0));
-      };
-      const float difference = ground[raster.neighbour(column, row, o.dx, o.dy)] - ground[i];
-      fall[i] = std::max(fall[i], -weight(recess_radius) * difference);
-      rise[i] = std::max(rise[i], weight(advance_radius) * difference);
+  parallel_for(static_cast<std::size_t>(raster.height), [&](std::size_t r) {
+    const int row = static_cast<int>(r);
+    std::vector<Neighbour> neighbours;
+    double radius = -1.0;  // Theirs; it changes where the material does.
+    for (int column = 0; column < raster.width; ++column) {
+      const Vec2 p = raster.node(column, row);
+      if (!near(p)) continue;
+      if (const double reach = reach_at(p); reach != radius) {
+        radius = reach;
+        neighbours = disc(recess * radius, radius, raster.spacing);
+      }
+      const std::size_t i = raster.index(column, row);
+      float fallen = 0.0f, risen = 0.0f;
+      for (const Neighbour& n : neighbours) {
+        const float difference = ground[raster.neighbour(column, row, n.dx, n.dy)] - ground[i];
+        fallen = std::max(fallen, -n.recess * difference);
+        risen = std::max(risen, n.advance * difference);
+      }
+      fall[i] = fallen;
+      rise[i] = risen;
     }
+    task.advance();
   }, task);
   return {raster.layer(std::move(fall)), raster.layer(std::move(rise))};
 }
@@ -170,8 +225,17 @@ Envelopes make_envelopes(const Heightfield& heightfield, const Raster& raster, d
 }  // namespace
 
 RockZone make_rock_zone(const Heightfield& heightfield, const RockZoneOptions& options, const Task& task) {
-  const Raster raster = Raster::over(options.lo, options.hi, options.spacing);
-  const Raster coarse = Raster::over(options.lo, options.hi, std::max(options.spacing, options.reach / kNodesPerReach));
+  const double largest_radius = options.reach * std::max(1.0, options.recess);
+  const double ledge = kLedge * options.block_size;
+  const double coarse_spacing = std::max(options.spacing, options.reach / kNodesPerReach);
+  // Gentle ground costs its bounds alone: rasters end where nothing steep is near, and are 0 beyond.
+  const Raster everything = Raster::over(options.lo, options.hi, options.spacing);
+  const SteepPart part = steep_part(heightfield, everything, options.slope);
+  if (part.empty()) return {.slope = options.slope};
+  const double near = largest_radius + 2.0 * ledge + 4.0 * coarse_spacing;
+  const Raster coarse =
+      Raster::over(options.lo, options.hi, coarse_spacing).around(part.lo - 2.0 * near, part.hi + 2.0 * near);
+  const Raster raster = everything.around(part.lo - near, part.hi + near);
   task.begin("finding steep ground", static_cast<std::uint64_t>(raster.height) + coarse.height);
   const auto reach_at = [&](const Vec2& p) {
     return options.reach_at ? options.reach_at(Vec3(p, heightfield.at(p.x, p.y).h)) : options.reach;
@@ -179,13 +243,12 @@ RockZone make_rock_zone(const Heightfield& heightfield, const RockZoneOptions& o
   std::vector<char> steep = steep_nodes(heightfield, raster, options.slope, task);
   if (options.reach_at)
     raster.for_each_node([&](std::size_t i, int column, int row) { steep[i] = steep[i] && reach_at(raster.node(column, row)) > 0.0; });
-  close_ledges(raster, steep, kLedge * options.block_size);
+  close_ledges(raster, steep, ledge);
 
-  const double largest_radius = options.reach * std::max(1.0, options.recess);
   const std::vector<float> to_steep = raster.distance(steep, true, largest_radius + 2.0 * coarse.spacing);
   const auto near_steep = [&](const Vec2& p, double radius) { return to_steep[raster.nearest(p)] <= radius; };
   const Envelopes envelopes =
-      make_envelopes(heightfield, coarse, options.recess, largest_radius,
+      make_envelopes(heightfield, coarse, options.recess,
                      [&](const Vec2& p) { return near_steep(p, 2.0 * coarse.spacing); }, reach_at, task);
   std::vector<float> nearby(coarse.count());
   coarse.for_each_node([&](std::size_t i, int column, int row) {
