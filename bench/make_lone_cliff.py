@@ -3,7 +3,7 @@
 
 Usage: make_lone_cliff.py FILE.exr
 
-The cliff stands in the middle 96 m x 96 m, and nothing outside is steeper than 15 degrees.
+The cliff stands in the middle 96 m x 96 m, and nothing outside is steeper than 31 degrees.
 """
 import sys
 from pathlib import Path

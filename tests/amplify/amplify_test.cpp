@@ -74,6 +74,30 @@ TEST(Amplify, MeshVerticesOnGroundThatIsNotSteepLieOnTheInput) {
   EXPECT_GT(flat, mesh.positions.size() / 5);
 }
 
+// Blocks, strata and reliefs hang on the terrain's south-west sample, so they move with it: the whole mesh is the same.
+TEST(Amplify, GivesTheSameMeshFiveThousandKilometresAway) {
+  const auto meshed = [](const Vec2& origin) {
+    ElevationGrid grid = test::terraces().grid();
+    grid.origin = origin;
+    const Amplified a = amplify(Heightfield(grid), small_blocks(),
+                                {.region_lo = origin + 8.0, .region_hi = origin + 40.0, .resolution = 0.2});
+    return polygonize(*a.field, {.region = a.region,
+                                 .origin = Vec3(origin, 0.0),
+                                 .resolution = 0.2,
+                                 .tolerance = 0.02,
+                                 .border = Border::Closed,
+                                 .parts = Parts::Grounded})
+        .mesh;
+  };
+  const TriangleMesh here = meshed(Vec2(0.0)), there = meshed({411'234.56, 5'234'567.89});
+  EXPECT_EQ(there.triangles, here.triangles);
+  EXPECT_EQ(there.labels, here.labels);
+  ASSERT_EQ(there.positions.size(), here.positions.size());
+  ASSERT_GT(here.positions.size(), 20'000u);
+  for (std::size_t v = 0; v < here.positions.size(); ++v)
+    ASSERT_LT(glm::length(there.positions[v] - here.positions[v]), 1e-3f) << v;
+}
+
 TEST(Amplify, PassesTheFieldContract) {
   const Amplified a = amplified(test::terraces());
   test::check_field_contract(*a.field, {Vec3(2.0, 2.0, -2.0), Vec3(61.0, 61.0, 28.0)});
