@@ -59,10 +59,12 @@ std::vector<Real> distance_to_marked(int width, int height, const Vec2& cell, co
       distance.fill(farthest);
       for (std::size_t i = 0; i < rows; ++i) {
         const std::size_t at = (upwards ? i : rows - 1 - i) * columns + first;
+        const char* const mark = &marked[at];
+        Real* const nearest = &distances[at];
         for (std::size_t k = 0; k < count; ++k) {
-          const Real next = std::min(distance[k] + step, farthest);
-          distance[k] = marked[at + k] ? Real{0} : next;
-          distances[at + k] = std::min(distances[at + k], distance[k]);
+          const Real next = distance[k] + step < farthest ? distance[k] + step : farthest;
+          distance[k] = mark[k] != 0 ? Real{0} : next;
+          nearest[k] = distance[k] < nearest[k] ? distance[k] : nearest[k];
         }
       }
     }
