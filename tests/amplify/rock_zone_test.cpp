@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
+#include <utility>
 
 #include "implicit/field_contract.h"
 #include "outcrop/core/rng.h"
@@ -52,6 +54,29 @@ TEST(RockZone, DoesNotAdvanceAboveThePlateau) {
       // The envelope is sampled: between nodes it may miss the level by what the ground does within a node's width.
       ASSERT_LE(h + zone.advance.at(x, y).h, heights.hi + 1.5);
     }
+}
+
+// Its rasters end where nothing steep is near.
+TEST(RockZone, IsTheSameHoweverMuchGentleGroundLiesAround) {
+  ElevationGrid grid{.width = 256, .height = 256};
+  for (int i = 0; i < 256 * 256; ++i) {
+    const double r = std::hypot(i % 256 - 128, i / 256 - 128);
+    grid.elevations.push_back(static_cast<float>(10.0 * std::clamp((16.0 - r) / 6.0, 0.0, 1.0)));
+  }
+  const Heightfield heightfield(std::move(grid));
+  const auto zone = [&](const Vec2& lo, const Vec2& hi) {
+    return make_rock_zone(heightfield, {.lo = lo, .hi = hi, .slope = kSlope, .reach = 3.0, .spacing = 0.5});
+  };
+  const RockZone wide = zone(heightfield.lo(), heightfield.hi()), close = zone(Vec2(96.0), Vec2(160.0));
+  ASSERT_FALSE(wide.empty);
+  EXPECT_GT(wide.recess.lo().x, 50.0);
+  Rng rng(1, "rock zone test");
+  for (int i = 0; i < 20'000; ++i) {
+    const double x = rng.uniform(0.0, 255.0);
+    const double y = rng.uniform(0.0, 255.0);
+    for (const auto layer : {&RockZone::recess, &RockZone::advance, &RockZone::nearby})
+      ASSERT_NEAR((wide.*layer).at(x, y).h, (close.*layer).at(x, y).h, 1e-5) << x << ' ' << y;
+  }
 }
 
 TEST(RockZone, WithoutSteepGroundIsEmpty) {
