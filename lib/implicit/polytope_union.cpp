@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -82,15 +84,34 @@ inline std::size_t choose(std::size_t n, const float* fold, double slack, const 
                          : choose_many(n, fold, slack, growth, highest, values, chosen);
 }
 
-Box box_of(const Points& points) noexcept {
-  const auto range = [](std::span<const double> values) {
-    Interval result;
-    for (const double v : values) result.include(v);
-    return result;
-  };
-  const Interval x = range(points.x), y = range(points.y), z = range(points.z);
-  return {{x.lo, y.lo, z.lo}, {x.hi, y.hi, z.hi}};
+/// The largest |x| + |y| + |z|. Floats that are not negative compare as their bits do, and a maximum of integers may be
+/// taken in any order, so in vectors.
+[[gnu::always_inline]] inline float farthest_loop(std::size_t n, const float* __restrict x, const float* __restrict y,
+                                                  const float* __restrict z) {
+  std::int32_t largest = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto bits = std::bit_cast<std::int32_t>(std::fabs(x[i]) + std::fabs(y[i]) + std::fabs(z[i]));
+    largest = bits > largest ? bits : largest;
+  }
+  return std::bit_cast<float>(largest);
 }
+OUTCROP_SIMD_CLONES
+float farthest_many(std::size_t n, const float* x, const float* y, const float* z) {
+  return farthest_loop(n, x, y, z);
+}
+inline float farthest(std::size_t n, const float* x, const float* y, const float* z) {
+  return n <= kFewPoints ? farthest_loop(n, x, y, z) : farthest_many(n, x, y, z);
+}
+
+/// A chunk of points relative to a polytope's centre.
+struct Relative {
+  Floats x, y, z;
+  Relative(const Points& points, const Vec3& centre) {
+    relative(points.size(), points.x.data(), centre.x, x.data());
+    relative(points.size(), points.y.data(), centre.y, y.data());
+    relative(points.size(), points.z.data(), centre.z, z.data());
+  }
+};
 
 /// The fold at a chunk of points, and what rounding may add to it.
 struct Folded {
@@ -98,28 +119,46 @@ struct Folded {
   double slack;
 };
 
-void fold_chunk(const PlacedKernel& polytope, const Points& points, const Box& box, Folded& out) noexcept {
+void fold_chunk(const PlacedKernel& polytope, const Points& points, Folded& out) noexcept {
   const auto& [kernel, position] = polytope;
   const std::size_t n = points.size();
-  Floats x, y, z;
-  relative(n, points.x.data(), position.x, x.data());
-  relative(n, points.y.data(), position.y, y.data());
-  relative(n, points.z.data(), position.z, z.data());
-  kernel->folded(n, x.data(), y.data(), z.data(), out.value.data());
-  const Vec3 farthest = glm::max(glm::abs(box.lo - position), glm::abs(box.hi - position));
-  out.slack = 2.0 * kernel->rounding_slack(farthest.x + farthest.y + farthest.z);
+  const Relative p(points, position);
+  kernel->folded(n, p.x.data(), p.y.data(), p.z.data(), out.value.data());
+  out.slack = 2.0 * kernel->rounding_slack(1.00001 * farthest(n, p.x.data(), p.y.data(), p.z.data()));
+}
+
+/// One polytope alone: nothing to compare it with.
+void values_of_one(const PlacedKernel& polytope, const Points& points, std::span<double> values,
+                   std::span<Vec3> gradients) noexcept {
+  const std::size_t n = points.size();
+  const Relative p(points, polytope.position);
+  Floats value;
+  std::array<Vec3f, kChunk> gradient;
+  polytope.kernel->values(n, p.x.data(), p.y.data(), p.z.data(), value.data(),
+                          gradients.empty() ? nullptr : gradient.data());
+  std::copy_n(value.data(), n, values.data());
+  for (std::size_t i = 0; i < gradients.size(); ++i) gradients[i] = gradient[i];
+}
+
+/// The lowest of polytopes without relief, which are what their folds are.
+void lowest_fold(std::span<const PlacedKernel> polytopes, const Points& points, std::span<double> values) noexcept {
+  Floats fold;
+  for (const auto& [kernel, position] : polytopes) {
+    const Relative p(points, position);
+    kernel->folded(points.size(), p.x.data(), p.y.data(), p.z.data(), fold.data());
+    lower(points.size(), fold.data(), 0.0, kNoGrowth.data(), values.data());
+  }
 }
 
 void between_chunk(std::span<const PlacedKernel> polytopes, const Points& points, const double* growth,
                    std::span<const double> floors, std::span<double> values, std::span<Vec3> gradients) noexcept {
   const std::size_t n = points.size();
-  const Box box = box_of(points);
   std::array<Folded, kRemembered> folds;
   Doubles highest;  // No point's result is above.
   std::copy(values.begin(), values.end(), highest.begin());
   const std::size_t remembered = std::min(polytopes.size(), kRemembered);
   for (std::size_t k = 0; k < remembered; ++k) {
-    fold_chunk(polytopes[k], points, box, folds[k]);
+    fold_chunk(polytopes[k], points, folds[k]);
     lower(n, folds[k].value.data(), polytopes[k].kernel->depth() + folds[k].slack, growth, highest.data());
   }
   // What is sure to end on the floor need not be known.
@@ -131,7 +170,7 @@ void between_chunk(std::span<const PlacedKernel> polytopes, const Points& points
   Folded own;
   for (std::size_t k = 0; k < polytopes.size(); ++k) {
     const auto& [kernel, position] = polytopes[k];
-    if (k >= remembered) fold_chunk(polytopes[k], points, box, own);
+    if (k >= remembered) fold_chunk(polytopes[k], points, own);
     const Folded& fold = k < remembered ? folds[k] : own;
     if (kernel->depth() == 0.0 && gradients.empty()) {
       lower(n, fold.value.data(), 0.0, growth, values.data());
@@ -208,8 +247,19 @@ PolytopeUnion::PolytopeUnion(std::vector<PolytopeKernel> kernels, std::span<cons
 }
 
 void PolytopeUnion::values(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept {
-  std::ranges::fill(values, std::numeric_limits<double>::infinity());
-  between_union(polytopes_, points, {}, {}, values, gradients);
+  if (polytopes_.size() > 1) std::ranges::fill(values, std::numeric_limits<double>::infinity());
+  for (std::size_t first = 0; first < points.size(); first += kChunk) {
+    const std::size_t n = std::min(kChunk, points.size() - first);
+    const Points some = points.subspan(first, n);
+    const std::span<double> out = values.subspan(first, n);
+    const std::span<Vec3> slopes = gradients.empty() ? gradients : gradients.subspan(first, n);
+    if (polytopes_.size() == 1)
+      values_of_one(polytopes_.front(), some, out, slopes);
+    else if (depth_ == 0.0 && gradients.empty())
+      lowest_fold(polytopes_, some, out);
+    else
+      between_chunk(polytopes_, some, kNoGrowth.data(), {}, out, slopes);
+  }
 }
 
 void PolytopeUnion::between(const Points& points, std::span<const double> floors, std::span<double> values,
