@@ -125,7 +125,7 @@ void ChunkBuilder::visit(const Cell& cell, int level, const KnownCell* known) {
 
 void ChunkBuilder::mesh(const Brick& brick, const Field& field, bool transition) {
   ++chunk_.bricks[brick.level];
-  crossings_.clear();
+  solver_.clear();
   find_vertices(brick, transition);
   if (transition) emit_transition(brick);
   emit_cells(brick, transition);
@@ -153,8 +153,8 @@ void ChunkBuilder::find_vertices(const Brick& brick, bool transition) {
 }
 
 std::uint32_t ChunkBuilder::vertex_on(const IVec3& from, const IVec3& along, double f_a, double f_b) {
-  const auto vertex = static_cast<std::uint32_t>(chunk_.positions.size() + crossings_.size());
-  crossings_.push_back({.from = from, .along = along, .f_a = f_a, .f_b = f_b});
+  const auto vertex = static_cast<std::uint32_t>(chunk_.positions.size() + solver_.size());
+  solver_.add(from, along, f_a, f_b);
   return vertex;
 }
 
@@ -210,9 +210,9 @@ std::uint32_t ChunkBuilder::half_vertex(const Brick& brick, const HalfEdge& edge
 }
 
 void ChunkBuilder::place(const Field& field) {
-  const std::size_t n = crossings_.size(), start = chunk_.positions.size();
-  chunk_.evaluations += solver_.solve(lattice_, field, crossings_, options_.normals);
-  for (const Crossing& c : crossings_) chunk_.positions.push_back(lattice_.local(c.index()));
+  const std::size_t n = solver_.size(), start = chunk_.positions.size();
+  chunk_.evaluations += solver_.solve(lattice_, field, options_.normals);
+  for (std::size_t i = 0; i < n; ++i) chunk_.positions.push_back(solver_.local(i));
   for (const Vec3& g : solver_.gradients()) {
     const double length = glm::length(g);
     // No gradient, no normal: left zero here and taken from the triangles later.

@@ -83,7 +83,6 @@ class ChunkBuilder {
   BrickValues values_;
   TransitionCells transition_;
   RootSolver solver_;
-  std::vector<Crossing> crossings_;
   FlatMap<Shared> shared_;              ///< Vertices on faces of bricks, by edge.
   FlatMap<std::uint32_t> half_vertices_;  ///< Of one brick, by half edge.
   std::array<std::uint32_t, 3 * kNodes> vertex_{};

@@ -1,6 +1,7 @@
 /// Roots of a field on edges of the lattice.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -13,37 +14,62 @@ namespace outcrop::meshing {
 /// passes through a node, not even after rounding to float.
 inline constexpr double kEndShare = 0.02;
 
-/// An edge between rock and air, and the place where it is cut.
-struct Crossing {
-  IVec3 from{0}, along{0};  ///< Lattice index of its start, and to its end; the start comes first by z, y, x.
-  double t = 0.5;           ///< Of the edge, kEndShare to 1 − kEndShare.
-
-  // The bracket that the solver narrows.
-  double f_a = 0.0, f_b = 0.0, t_a = 0.0, t_b = 1.0;
-  double tolerance = 0.0;
-  int kept = 0;  ///< Which end the last step kept: −1 a, 1 b.
-
-  /// In units of the lattice.
-  [[nodiscard]] Vec3 index() const noexcept { return Vec3(from) + t * Vec3(along); }
-};
-
-/// Solves for all crossings together, in a few batches.
+/// Cuts edges between rock and air, in a few batches.
 class RootSolver {
  public:
-  /// Sets `t` of each crossing from its values at the edge's ends, `f_a` and `f_b`: safeguarded regula falsi (Illinois,
-  /// Dowell and Jarratt 1971). @return field values computed.
-  std::size_t solve(const Lattice& lattice, const Field& field, std::span<Crossing> crossings, bool gradients);
-  /// Where the crossings are, world.
-  [[nodiscard]] Points places() const noexcept { return {x_, y_, z_}; }
+  void clear() noexcept { count_ = 0; }
+  /// An edge from a node of the lattice, or a middle between nodes, to `from` + `along`; the field's values at its ends
+  /// differ in sign. The edges' starts come first by z, y, x, so that all who cut an edge cut it alike.
+  void add(const IVec3& from, const IVec3& along, double f_a, double f_b) {
+    if (count_ == t_.size()) grow();
+    for (int axis = 0; axis < 3; ++axis) {
+      from_[axis][count_] = from[axis];
+      along_[axis][count_] = along[axis];
+    }
+    f_a_[count_] = f_a;
+    f_b_[count_++] = f_b;
+  }
+  [[nodiscard]] std::size_t size() const noexcept { return count_; }
+
+  /// Finds a root on each edge: first where the values at its ends would have it if f were straight; edges on which it
+  /// is not go on with safeguarded quadratic interpolation (Muller 1956). The same roots with and without gradients.
+  /// @return field values computed, mostly one an edge.
+  std::size_t solve(const Lattice& lattice, const Field& field, bool gradients);
+  /// Where the roots are, world; kEndShare to 1 − kEndShare of their edges.
+  [[nodiscard]] Points places() const noexcept {
+    return {std::span(world_[0]).first(count_), std::span(world_[1]).first(count_), std::span(world_[2]).first(count_)};
+  }
+  /// The same as meshes store it.
+  [[nodiscard]] Vec3f local(std::size_t i) const noexcept {
+    return Vec3f(Vec3(offset_[0][i], offset_[1][i], offset_[2][i]) + shift_);
+  }
   /// ∇f there, when asked for.
   [[nodiscard]] std::span<const Vec3> gradients() const noexcept { return gradients_; }
 
  private:
-  void gather(const Lattice& lattice, std::span<const Crossing> crossings);
+  using Coordinates = std::array<std::vector<double>, 3>;
+  /// An edge whose root lies between a and b; d is the last place that b or a was moved from.
+  struct Bracket {
+    std::size_t edge;
+    double t, tolerance;
+    double t_a, f_a, t_b, f_b, t_d, f_d;
 
-  std::vector<double> x_, y_, z_, values_;
+    bool narrow(double f);
+    void propose(int step);
+  };
+  void grow();
+  void place(const Lattice& lattice, std::size_t edge);
+  std::size_t refine(const Lattice& lattice, const Field& field, bool gradients);
+
+  std::size_t count_ = 0;
+  Coordinates from_, along_;  ///< In units of the lattice.
+  std::vector<double> f_a_, f_b_, t_, values_;
+  Coordinates offset_, world_;  ///< Of the roots: from the lattice's corner, and from the world's.
+  Vec3 shift_{0.0};             ///< From the mesh's origin to the lattice's corner.
   std::vector<Vec3> gradients_;
-  std::vector<std::size_t> active_;
+  std::vector<Bracket> open_;  ///< Edges whose root is not found yet, and what `refine` asks for.
+  Coordinates asked_;
+  std::vector<Vec3> asked_gradients_;
 };
 
 }  // namespace outcrop::meshing
