@@ -8,6 +8,7 @@
 
 #include "lanes.h"
 #include "outcrop/core/error.h"
+#include "outcrop/core/simd.h"
 
 namespace outcrop {
 namespace {
@@ -50,26 +51,51 @@ constexpr double kLargestGain = 5.85;  // max K over t ∈ (0, 1] is 5.844, at t
   return std::max(a, b) + rounding / 6.0 * k * k * k;
 }
 
-/// The planes' distances over a box.
+/// Distances of planes from a box's centre, and how much farther its corners reach.
+OUTCROP_SIMD_CLONES
+void distances_over(std::size_t n, const float* __restrict nx, const float* __restrict ny, const float* __restrict nz,
+                    const float* __restrict d, const TurnedBox& box, double* __restrict at_centre,
+                    double* __restrict reach) {
+  const Vec3 c = box.centre, u = box.half[0], v = box.half[1], w = box.half[2];
+  for (std::size_t k = 0; k < n; ++k) {
+    const double x = nx[k], y = ny[k], z = nz[k];
+    at_centre[k] = x * c.x + y * c.y + z * c.z + d[k];
+    reach[k] = std::fabs(x * u.x + y * u.y + z * u.z) + std::fabs(x * v.x + y * v.y + z * v.z) +
+               std::fabs(x * w.x + y * w.y + z * w.z);
+  }
+}
+
+/// The planes' distances over a box; asked for in the planes' order, since a few are found at a time.
 class PlanesOverBox {
  public:
   /// Over the box and what lies within `around` of it.
   PlanesOverBox(const PackedPlanes& planes, const TurnedBox& box, double around)
-      : planes_(planes), box_(box), around_(around) {}
-
-  [[nodiscard]] double at_centre(std::size_t k) const {
-    return glm::dot(planes_.normal(k), box_.centre) + planes_.d()[k];
+      : planes_(planes), box_(box), around_(around) {
+    find(0);
   }
-  [[nodiscard]] Interval range(std::size_t k) const {
-    const Vec3 along = glm::abs(planes_.normal(k) * box_.half);
-    const double centre = at_centre(k), reach = along.x + along.y + along.z + around_;
+
+  [[nodiscard]] double at_centre(std::size_t k) const { return at_centre_[k - first_]; }
+  [[nodiscard]] Interval range(std::size_t k) {
+    if (k - first_ == kAtATime) find(k);
+    const double centre = at_centre_[k - first_], reach = reach_[k - first_] + around_;
     return {centre - reach, centre + reach};
   }
 
  private:
+  static constexpr std::size_t kAtATime = 64;
+
+  void find(std::size_t first) {
+    first_ = first;
+    const std::size_t n = std::min(kAtATime, planes_.size() - first);
+    distances_over(n, planes_.nx() + first, planes_.ny() + first, planes_.nz() + first, planes_.d() + first, box_,
+                   at_centre_.data(), reach_.data());
+  }
+
   const PackedPlanes& planes_;
   const TurnedBox& box_;
   double around_;
+  std::size_t first_ = 0;
+  std::array<double, kAtATime> at_centre_, reach_;
 };
 
 /// A lower bound of |g| for every convex sum g of the normals: how far they reach along their mean direction.
@@ -233,12 +259,13 @@ void PolytopeKernel::warped(int n, const float* x, const float* y, const float* 
 Interval PolytopeKernel::bound(const TurnedBox& local) const noexcept {
   // smax grows with both arguments, so folding the ends bounds the fold; the fold is 1-Lipschitz, so its value at the
   // centre bounds it too. The warp only carves: c(p) ≤ b(p) ≤ c(p) + amplitude, since c is convex and 1-Lipschitz.
-  const PlanesOverBox h(planes_, local, 0.0);
+  PlanesOverBox h(planes_, local, 0.0);
   const double inverse = inverse_of(rounding_);
   Interval fold = h.range(0);
   double at_centre = h.at_centre(0);
   for (std::size_t k = 1; k < planes_.size(); ++k) {
     const Interval range = h.range(k);
+    if (range.hi <= fold.lo - rounding_) continue;  // Changes neither end, nor what is between.
     fold = {smax(fold.lo, range.lo, rounding_, inverse), smax(fold.hi, range.hi, rounding_, inverse)};
     at_centre = smax(at_centre, h.at_centre(k), rounding_, inverse);
   }
@@ -254,34 +281,44 @@ PolytopeKernel PolytopeKernel::narrow(const TurnedBox& local) const {
   const double apart =
       rounding_ + 1e-5 + 3.0 * rounding_slack(local.coordinate_sum());  // Beyond this the fold weight is 0 to the bit.
 
-  const PlanesOverBox h(planes_, local, around);
+  PlanesOverBox h(planes_, local, around);
   const double inverse = inverse_of(rounding_);
-  std::vector<std::uint32_t> kept{0};
-  std::vector<double> largest_weights{0.0};
+  std::vector<std::uint32_t> kept;
+  std::vector<double> largest_weights;  // Only for a warp's slope.
   kept.reserve(planes_.size());
-  largest_weights.reserve(planes_.size());
+  if (warp_.active()) largest_weights.reserve(planes_.size());
+  const auto keep = [&](std::uint32_t k, double gap) {
+    kept.push_back(k);
+    if (warp_.active()) largest_weights.push_back(std::clamp(1.0 - (gap - 1e-5) * inverse, 0.0, 1.0));
+  };
+  const auto keep_only = [&](std::uint32_t k) {
+    kept = {k};
+    if (warp_.active()) largest_weights = {0.0};
+  };
+  keep_only(0);
   Interval fold = h.range(0);
   double at_centre = h.at_centre(0);
   for (std::uint32_t k = 1; k < planes_.size(); ++k) {
     const Interval range = h.range(k);
     if (range.hi <= fold.lo - apart) continue;
     if (range.lo >= fold.hi + apart) {
-      kept = {k};
-      largest_weights = {0.0};
+      keep_only(k);
       fold = range;
       at_centre = h.at_centre(k);
       continue;
     }
-    const double gap = std::max({range.lo - fold.hi, fold.lo - range.hi, 0.0});
-    kept.push_back(k);
-    largest_weights.push_back(rounding_ > 0.0f ? std::clamp(1.0 - (gap - 1e-5) / rounding_, 0.0, 1.0) : 1.0);
+    keep(k, std::max({range.lo - fold.hi, fold.lo - range.hi, 0.0}));
     at_centre = smax(at_centre, h.at_centre(k), rounding_, inverse);
     fold = intersection(
         Interval{smax(fold.lo, range.lo, rounding_, inverse), smax(fold.hi, range.hi, rounding_, inverse)},
         Interval{at_centre - reach, at_centre + reach});
   }
-  PolytopeKernel result = *this;
-  if (kept.size() < planes_.size()) result.planes_ = planes_.only(kept);
+  PolytopeKernel result;
+  result.planes_ = kept.size() < planes_.size() ? planes_.only(kept) : planes_;
+  result.rounding_ = rounding_;
+  result.warp_ = warp_;
+  result.relief_origin_ = relief_origin_;
+  result.farthest_ = farthest_;
   if (warp_.active())
     result.lipschitz_ = std::min(lipschitz_, warped_lipschitz(result.planes_, largest_weights, rounding_, warp_));
   return result;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <string>
 
 #include "outcrop/core/error.h"
@@ -37,13 +38,15 @@ struct SlotCases {
 /// Twice the middle's coordinates and the direction: no two edges of a mesh share both, whatever their lengths.
 constexpr int kKeyBits = 19, kDirectionBits = 5;
 
-std::uint64_t edge_key(const IVec3& from, const IVec3& along) {
-  const IVec3 middle = 2 * from + along;
-  std::uint64_t key = 0;
-  for (int axis = 2; axis >= 0; --axis) key = key << kKeyBits | static_cast<std::uint64_t>(middle[axis]);
+std::uint64_t direction_of(const IVec3& along) {
   const auto sign = [](int d) { return d > 0 ? 2 : d < 0 ? 0 : 1; };
-  const int direction = sign(along.x) + 3 * sign(along.y) + 9 * sign(along.z);
-  return key << kDirectionBits | static_cast<std::uint64_t>(direction);
+  return static_cast<std::uint64_t>(sign(along.x) + 3 * sign(along.y) + 9 * sign(along.z));
+}
+
+std::uint64_t edge_key(const IVec3& from, const IVec3& along, std::uint64_t direction) {
+  const IVec3 middle = 2 * from + along;
+  const auto part = [](int coordinate) { return static_cast<std::uint64_t>(coordinate); };
+  return ((part(middle.z) << kKeyBits | part(middle.y)) << kKeyBits | part(middle.x)) << kDirectionBits | direction;
 }
 
 IVec3 twice_middle(std::uint64_t key) {
@@ -78,6 +81,7 @@ void contradiction(const Vec3& where) {
 Chunk ChunkBuilder::build(const Cell& cell, int level) {
   chunk_ = {};
   shared_.clear();
+  shared_number_.clear();
   descend(cell, level);
   close_border();
   fill_missing_normals();
@@ -135,21 +139,21 @@ void ChunkBuilder::mesh(const Brick& brick, const Field& field, bool transition)
 void ChunkBuilder::find_vertices(const Brick& brick, bool transition) {
   const IVec3 first = brick.first(), n = brick.cells;
   const int edge = 1 << brick.level;
-  brick.for_each_row([&](int axis, int j, int k, unsigned bits) {
-    if (transition) bits &= ~transition_.divided(axis, j, k);
-    const int row = 9 * j + 81 * k;
-    const int planes = (axis != 1 && (j == 0 || j == n.y)) + (axis != 2 && (k == 0 || k == n.z));
-    for (; bits != 0; bits &= bits - 1) {
-      const int i = std::countr_zero(bits), node = i + row;
-      IVec3 along(0);
-      along[axis] = edge;
-      const IVec3 from = first + edge * IVec3(i, j, k);
+  for (int axis = 0; axis < 3; ++axis) {
+    const IVec3 along = edge * IVec3(axis == 0, axis == 1, axis == 2);
+    const std::uint64_t direction = direction_of(along);
+    brick.crossings(axis).for_each([&](int node) {
+      const IVec3 p = node_place(node);
+      if (transition && (transition_.divided(axis, p.y, p.z) >> p.x & 1)) return;
+      const IVec3 from = first + edge * p;
       const double a = values_.at(node), b = values_.at(node + kStride[axis]);
-      const int sides = planes + (axis != 0 && (i == 0 || i == n.x));
-      vertex_[axis * kNodes + node] = sides == 0 ? vertex_on(from, along, a, b)
-                                                 : shared_vertex_on(from, along, a, b, sides);
-    }
-  });
+      const int planes = (axis != 0 && (p.x == 0 || p.x == n.x)) + (axis != 1 && (p.y == 0 || p.y == n.y)) +
+                         (axis != 2 && (p.z == 0 || p.z == n.z));
+      vertex_[axis * kNodes + node] = planes == 0
+                                          ? vertex_on(from, along, a, b)
+                                          : shared_vertex_on(from, along, a, b, edge_key(from, along, direction), planes);
+    });
+  }
 }
 
 std::uint32_t ChunkBuilder::vertex_on(const IVec3& from, const IVec3& along, double f_a, double f_b) {
@@ -159,9 +163,13 @@ std::uint32_t ChunkBuilder::vertex_on(const IVec3& from, const IVec3& along, dou
 }
 
 std::uint32_t ChunkBuilder::shared_vertex_on(const IVec3& from, const IVec3& along, double f_a, double f_b,
-                                             int planes) {
-  Shared& shared = shared_[edge_key(from, along)];
-  if (shared.quarters == 0) shared.vertex = vertex_on(from, along, f_a, f_b);
+                                             std::uint64_t key, int planes) {
+  std::uint32_t& number = shared_number_[key];
+  if (number == 0) {
+    shared_.push_back({.key = key, .vertex = vertex_on(from, along, f_a, f_b)});
+    number = static_cast<std::uint32_t>(shared_.size());
+  }
+  BorderVertex& shared = shared_[number - 1];
   shared.quarters += planes == 1 ? 2 : 1;
   return shared.vertex;
 }
@@ -204,7 +212,8 @@ std::uint32_t ChunkBuilder::half_vertex(const Brick& brick, const HalfEdge& edge
   const IVec3 from = brick.first() + half * a, along = half * d;
   const double f_a = transition_.at(edge[0]), f_b = transition_.at(edge[1]);
   const std::uint32_t made =
-      planes == 0 ? vertex_on(from, along, f_a, f_b) : shared_vertex_on(from, along, f_a, f_b, planes);
+      planes == 0 ? vertex_on(from, along, f_a, f_b)
+                  : shared_vertex_on(from, along, f_a, f_b, edge_key(from, along, direction_of(along)), planes);
   vertex = made + 1;
   return made;
 }
@@ -225,12 +234,9 @@ void ChunkBuilder::place(const Field& field) {
 }
 
 void ChunkBuilder::close_border() {
-  shared_.for_each([&](std::uint64_t key, const Shared& shared) {
-    if (shared.quarters != quarters_around(lattice_, key))
-      chunk_.border.push_back({key, shared.vertex, shared.quarters});
+  std::copy_if(shared_.begin(), shared_.end(), std::back_inserter(chunk_.border), [&](const BorderVertex& shared) {
+    return shared.quarters != quarters_around(lattice_, shared.key);
   });
-  std::sort(chunk_.border.begin(), chunk_.border.end(),
-            [](const BorderVertex& a, const BorderVertex& b) { return a.vertex < b.vertex; });
 }
 
 void ChunkBuilder::fill_missing_normals() {

@@ -57,10 +57,6 @@ class ChunkBuilder {
   [[nodiscard]] Chunk build(const Cell& cell, int level);
 
  private:
-  struct Shared {
-    std::uint32_t vertex = 0;
-    std::uint8_t quarters = 0;
-  };
   void descend(const Cell& cell, int level);
   void visit(const Cell& cell, int level, const KnownCell* known);
   void mesh(const Brick& brick, const Field& field, bool transition);
@@ -69,7 +65,8 @@ class ChunkBuilder {
   void emit_transition(const Brick& brick);
   [[nodiscard]] std::uint32_t half_vertex(const Brick& brick, const HalfEdge& edge);
   std::uint32_t vertex_on(const IVec3& from, const IVec3& along, double f_a, double f_b);
-  std::uint32_t shared_vertex_on(const IVec3& from, const IVec3& along, double f_a, double f_b, int planes);
+  std::uint32_t shared_vertex_on(const IVec3& from, const IVec3& along, double f_a, double f_b, std::uint64_t key,
+                                 int planes);
   void place(const Field& field);
   void close_border();
   void fill_missing_normals();
@@ -83,7 +80,8 @@ class ChunkBuilder {
   BrickValues values_;
   TransitionCells transition_;
   RootSolver solver_;
-  FlatMap<Shared> shared_;              ///< Vertices on faces of bricks, by edge.
+  std::vector<BorderVertex> shared_;      ///< Vertices on faces of bricks, in order.
+  FlatMap<std::uint32_t> shared_number_;  ///< By edge: the place in `shared_`, and 1.
   FlatMap<std::uint32_t> half_vertices_;  ///< Of one brick, by half edge.
   std::array<std::uint32_t, 3 * kNodes> vertex_{};
 };

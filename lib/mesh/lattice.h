@@ -3,10 +3,10 @@
 #pragma once
 
 #include <array>
-#include <bit>
 #include <cstdint>
 #include <vector>
 
+#include "node_set.h"
 #include "outcrop/core/box.h"
 #include "outcrop/core/vec.h"
 #include "outcrop/implicit/field.h"
@@ -14,11 +14,6 @@
 
 namespace outcrop::meshing {
 
-inline constexpr int kBrickCells = 8;
-inline constexpr int kBrickNodes = kBrickCells + 1;
-inline constexpr int kNodes = kBrickNodes * kBrickNodes * kBrickNodes;
-/// From a node to the next along each axis, in a brick's arrays of 9³ values.
-inline constexpr int kStride[3] = {1, kBrickNodes, kBrickNodes * kBrickNodes};
 /// Positions are floats: with more cells an axis between them and the origin a vertex could round onto its node.
 inline constexpr int kMaxCells = 1 << 17;
 
@@ -87,48 +82,45 @@ struct Cell {
 
 /// Which of a brick's 9³ nodes are rock, and the edges between rock and air.
 ///
-/// A node is rock where f < 0; f = 0 counts as air. Rows run along x: bit i of a row is node or edge i.
+/// A node is rock where f < 0; f = 0 counts as air.
 struct Brick {
   IVec3 index{0};  ///< In bricks of its level.
   int level = 0;
   IVec3 cells{0};  ///< 1 to 8 an axis; less than 8 only at the lattice's end.
-  std::array<std::uint16_t, kBrickNodes * kBrickNodes> rock{};
+  BrickShape shape;
+  NodeSet rock;
 
   Brick(const Lattice& lattice, const IVec3& brick_index, int brick_level);
 
   /// The lattice index of its first node.
   [[nodiscard]] IVec3 first() const noexcept { return index * (kBrickCells << level); }
 
-  /// Bit i is set when the edge from node (i, j, k) along `axis` joins rock and air; j, k and the edge inside the
-  /// brick.
-  [[nodiscard]] unsigned crossing(int axis, int j, int k) const noexcept {
-    const unsigned here = rock[k * 9 + j];
-    if (axis == 0) return (here ^ (here >> 1)) & ((1u << cells.x) - 1);
-    return here ^ (axis == 1 ? rock[k * 9 + j + 1] : rock[(k + 1) * 9 + j]);
+  /// The nodes at which an edge along `axis` starts that joins rock and air.
+  [[nodiscard]] NodeSet crossings(int axis) const noexcept {
+    return (rock ^ rock.before(kStride[axis])) & shape.edges[axis];
   }
-  /// Calls visit(axis, j, k, crossing) for each row of edges.
+  /// Calls visit(axis, j, k, crossing) for each row of edges along x; bit i of `crossing` is the edge from (i, j, k).
   template <class Visit>
   void for_each_row(Visit&& visit) const {
-    for (int axis = 0; axis < 3; ++axis)
+    for (int axis = 0; axis < 3; ++axis) {
+      const NodeSet crossing = crossings(axis);
       for (int k = 0; k <= cells.z - (axis == 2); ++k)
-        for (int j = 0; j <= cells.y - (axis == 1); ++j) visit(axis, j, k, crossing(axis, j, k));
+        for (int j = 0; j <= cells.y - (axis == 1); ++j) visit(axis, j, k, crossing.from(9 * j + 81 * k) & 0x1FFu);
+    }
   }
   /// Calls visit(node, cube_case) for each cell that holds both; node = i + 9 j + 81 k.
   template <class Visit>
   void for_each_mixed_cell(Visit&& visit) const {
-    const unsigned mask = (1u << cells.x) - 1;
-    for (int k = 0; k < cells.z; ++k) {
-      for (int j = 0; j < cells.y; ++j) {
-        const unsigned a = rock[k * 9 + j], b = rock[k * 9 + j + 1];
-        const unsigned c = rock[k * 9 + 9 + j], d = rock[k * 9 + 9 + j + 1];
-        const unsigned any = a | b | c | d, all = a & b & c & d;
-        for (unsigned mixed = (any | any >> 1) & ~(all & all >> 1) & mask; mixed != 0; mixed &= mixed - 1) {
-          const int i = std::countr_zero(mixed);
-          visit(i + 9 * j + 81 * k,
-                static_cast<int>((a >> i & 3) | (b >> i & 3) << 2 | (c >> i & 3) << 4 | (d >> i & 3) << 6));
-        }
-      }
+    NodeSet any = rock, all = rock;
+    for (const int stride : kStride) {
+      any = any | any.before(stride);
+      all = all & all.before(stride);
     }
+    ((any ^ all) & shape.cells).for_each([&](int node) {
+      const unsigned below = rock.from(node), above = rock.from(node + 81);
+      visit(node,
+            static_cast<int>((below & 3) | (below >> 9 & 3) << 2 | (above & 3) << 4 | (above >> 9 & 3) << 6));
+    });
   }
 };
 

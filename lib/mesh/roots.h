@@ -20,7 +20,7 @@ class RootSolver {
   void clear() noexcept { count_ = 0; }
   /// An edge from a node of the lattice, or a middle between nodes, to `from` + `along`; the field's values at its ends
   /// differ in sign. The edges' starts come first by z, y, x, so that all who cut an edge cut it alike.
-  void add(const IVec3& from, const IVec3& along, double f_a, double f_b) {
+  void add(const Vec3& from, const Vec3& along, double f_a, double f_b) {
     if (count_ == t_.size()) grow();
     for (int axis = 0; axis < 3; ++axis) {
       from_[axis][count_] = from[axis];
