@@ -78,14 +78,24 @@ void contradiction(const Vec3& where) {
       place);
 }
 
+void Chunk::clear() {
+  positions.clear();
+  normals.clear();
+  labels.clear();
+  triangles.clear();
+  border.clear();
+  cells = evaluations = 0;
+  bricks.fill(0);
+}
+
 Chunk ChunkBuilder::build(const Cell& cell, int level) {
-  chunk_ = {};
+  chunk_.clear();
   shared_.clear();
   shared_number_.clear();
   descend(cell, level);
   close_border();
   fill_missing_normals();
-  return std::move(chunk_);
+  return chunk_;
 }
 
 void ChunkBuilder::descend(const Cell& cell, int level) {
@@ -179,9 +189,10 @@ void ChunkBuilder::emit_cells(const Brick& brick, bool transition) {
   brick.for_each_mixed_cell([&](int node, int cube_case) {
     if (transition && transition_.is_coned(node)) return;
     ++chunk_.cells;
+    const std::uint32_t* const vertex = &vertex_[node];
     for (int i = cases.first[cube_case]; i < cases.first[cube_case + 1]; ++i) {
       const auto& slot = cases.triangles[i].slot;
-      chunk_.triangles.push_back({vertex_[slot[0] + node], vertex_[slot[1] + node], vertex_[slot[2] + node]});
+      chunk_.triangles.push_back({vertex[slot[0]], vertex[slot[1]], vertex[slot[2]]});
     }
   });
 }
@@ -225,7 +236,7 @@ void ChunkBuilder::place(const Field& field) {
   for (const Vec3& g : solver_.gradients()) {
     const double length = glm::length(g);
     // No gradient, no normal: left zero here and taken from the triangles later.
-    chunk_.normals.push_back(length > 0.0 && std::isfinite(length) ? Vec3f(g / length) : Vec3f(0.0f));
+    chunk_.normals.push_back(length > 0.0 && std::isfinite(length) ? Vec3f(g * (1.0 / length)) : Vec3f(0.0f));
   }
   if (options_.labels) {
     chunk_.labels.resize(start + n);

@@ -32,6 +32,9 @@ struct Chunk {
   std::vector<BorderVertex> border; ///< In the order of their vertices.
   std::size_t cells = 0, evaluations = 0;
   std::array<std::size_t, kMaxLevels + 1> bricks{};  ///< With surface, by level.
+
+  /// Keeps the memory.
+  void clear();
 };
 
 /// Quarter turns around an edge inside the lattice; half as many for each side of the lattice that it lies on.
@@ -41,7 +44,8 @@ struct Chunk {
 /// Throws the ParameterError that says that bound or narrow contradict the field's values near a place.
 [[noreturn]] void contradiction(const Vec3& where);
 
-/// Meshes the bricks of a tree's cell at `level`, narrowing on the way down.
+/// Meshes the bricks of tree's cells, one after the other, narrowing on the way down. What it takes for a chunk serves
+/// for the next; chunks do not depend on those before.
 class ChunkBuilder {
  public:
   /// By BrickTree::key; need not be complete.

@@ -1,6 +1,11 @@
 #include "mesh_region.h"
 
+#include <sys/mman.h>
+
 #include <algorithm>
+#include <cstdint>
+#include <memory>
+#include <mutex>
 #include <utility>
 #include <vector>
 
@@ -98,6 +103,42 @@ class Forest {
   std::vector<char> made_ = std::vector<char>(trees_.size(), 0);
 };
 
+/// Chunk builders that are not at work: as many as there are threads, not as there are chunks.
+class Builders {
+ public:
+  Builders(const Lattice& lattice, const PolygonizeOptions& options, const Task& task)
+      : lattice_(lattice), options_(options), task_(task) {}
+  [[nodiscard]] std::unique_ptr<ChunkBuilder> take() {
+    const std::scoped_lock lock(mutex_);
+    if (idle_.empty()) return std::make_unique<ChunkBuilder>(lattice_, options_, task_);
+    std::unique_ptr<ChunkBuilder> builder = std::move(idle_.back());
+    idle_.pop_back();
+    return builder;
+  }
+  void give_back(std::unique_ptr<ChunkBuilder> builder) {
+    const std::scoped_lock lock(mutex_);
+    idle_.push_back(std::move(builder));
+  }
+
+ private:
+  const Lattice& lattice_;
+  const PolygonizeOptions& options_;
+  const Task& task_;
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<ChunkBuilder>> idle_;
+};
+
+/// Room for `count` more, and a wish for large pages: with small ones the kernel takes as long to hand out a mesh's
+/// memory as the mesher to fill it.
+template <class T>
+void reserve(std::vector<T>& array, std::size_t count) {
+  array.reserve(count);
+  constexpr std::size_t kPage = std::size_t{1} << 21;
+  const auto begin = reinterpret_cast<std::uintptr_t>(array.data());
+  const std::uintptr_t first = (begin + kPage - 1) / kPage * kPage, last = (begin + count * sizeof(T)) / kPage * kPage;
+  if (first < last) madvise(reinterpret_cast<void*>(first), last - first, MADV_HUGEPAGE);  // Declined, nothing is lost.
+}
+
 }  // namespace
 
 int chunk_level(const Lattice& lattice) noexcept {
@@ -125,6 +166,7 @@ Assembly mesh_region(const Field& field, const Lattice& lattice, const Polygoniz
   const AssemblyNeeds needs(options);
   Assembly assembly(lattice, options, pieces.spool.empty() ? memory_store() : disk_store(pieces.spool));
   Forest forest(lattice, cells, level, options.tolerance, forced);
+  Builders builders(lattice, options, task);
   task.begin("meshing", cells.size());
   const std::size_t at_a_time = std::max<std::size_t>(1, pieces.squares >> 2 * std::max(0, level - kChunkLevel));
   for (std::size_t first = 0; first < cells.size(); first += at_a_time) {
@@ -133,15 +175,16 @@ Assembly mesh_region(const Field& field, const Lattice& lattice, const Polygoniz
     auto made = parallel_map(
         last - first,
         [&](std::size_t i) {
-          ChunkBuilder builder(lattice, options, task);
+          std::unique_ptr<ChunkBuilder> builder = builders.take();
           BrickTree tree;
           ChunkBuilder::KnownCells known;
           if (!uniform) {
             tree = forest.balanced(first + i);
             known = forest.take_known(first + i);
-            builder.use(tree, known);
+            builder->use(tree, known);
           }
-          Chunk chunk = builder.build(cells[first + i], level);
+          Chunk chunk = builder->build(cells[first + i], level);
+          builders.give_back(std::move(builder));
           if (uniform) cells[first + i].field.reset();
           ChunkSummary summary = summarise(chunk, lattice, needs);
           task.advance();
@@ -158,21 +201,28 @@ Assembly mesh_region(const Field& field, const Lattice& lattice, const Polygoniz
 
 void MeshCollector::begin(const MeshTotals& totals) {
   mesh_.origin = totals.origin;
-  mesh_.positions.reserve(totals.vertices);
-  if (totals.normals) mesh_.normals.reserve(totals.vertices);
-  if (totals.labels) mesh_.labels.reserve(totals.vertices);
-  mesh_.triangles.reserve(totals.triangles);
+  reserve(mesh_.positions, totals.vertices);
+  if (totals.normals) reserve(mesh_.normals, totals.vertices);
+  if (totals.labels) reserve(mesh_.labels, totals.vertices);
+  reserve(mesh_.triangles, totals.triangles);
 }
 
 void MeshCollector::add(const MeshPiece& piece) {
-  for (std::size_t v = 0; v < piece.positions.size(); ++v) {
-    if (piece.numbers[v] < piece.first_number) continue;
-    mesh_.positions.push_back(piece.positions[v]);
-    if (!piece.normals.empty()) mesh_.normals.push_back(piece.normals[v]);
-    if (!piece.labels.empty()) mesh_.labels.push_back(piece.labels[v]);
+  // New vertices come in long runs between those that earlier pieces brought.
+  const auto append = [](auto& array, const auto& from, std::size_t first, std::size_t last) {
+    if (!from.empty()) array.insert(array.end(), from.begin() + first, from.begin() + last);
+  };
+  const auto& numbers = piece.numbers;
+  for (std::size_t first = 0, last = 0; first < numbers.size(); first = last) {
+    const bool known = numbers[first] < piece.first_number;
+    while (last < numbers.size() && (numbers[last] < piece.first_number) == known) ++last;
+    if (known) continue;
+    append(mesh_.positions, piece.positions, first, last);
+    append(mesh_.normals, piece.normals, first, last);
+    append(mesh_.labels, piece.labels, first, last);
   }
   for (const Triangle& t : piece.triangles)
-    mesh_.triangles.push_back({piece.numbers[t[0]], piece.numbers[t[1]], piece.numbers[t[2]]});
+    mesh_.triangles.push_back({numbers[t[0]], numbers[t[1]], numbers[t[2]]});
 }
 
 }  // namespace outcrop::meshing
