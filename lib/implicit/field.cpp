@@ -36,6 +36,10 @@ Interval Field::bound(const Box& box) const noexcept {
 
 FieldPtr Field::narrow(const Box&) const { return shared_from_this(); }
 
+FieldPtr Field::narrow_to_surface(const Box& box) const {
+  return may_change_sign(bound(box)) ? narrow(box) : nullptr;
+}
+
 std::optional<Box> Field::support() const noexcept { return std::nullopt; }
 
 void Field::labels(const Points&, std::span<Label> labels) const noexcept {

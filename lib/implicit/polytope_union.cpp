@@ -140,13 +140,55 @@ void values_of_one(const PlacedKernel& polytope, const Points& points, std::span
   for (std::size_t i = 0; i < gradients.size(); ++i) gradients[i] = gradient[i];
 }
 
-/// The lowest of polytopes without relief, which are what their folds are.
-void lowest_fold(std::span<const PlacedKernel> polytopes, const Points& points, std::span<double> values) noexcept {
-  Floats fold;
-  for (const auto& [kernel, position] : polytopes) {
-    const Relative p(points, position);
-    kernel->folded(points.size(), p.x.data(), p.y.data(), p.z.data(), fold.data());
-    lower(points.size(), fold.data(), 0.0, kNoGrowth.data(), values.data());
+/// Polytope k's fold taken in: the lowest so far, and whose it is; of equal ones the first.
+[[gnu::always_inline]] inline void lowest_loop(std::size_t n, std::int32_t k, const float* __restrict fold,
+                                               float* __restrict lowest, std::int32_t* __restrict owner) {
+  for (std::size_t i = 0; i < n; ++i) {
+    const bool below = fold[i] < lowest[i];
+    lowest[i] = below ? fold[i] : lowest[i];
+    owner[i] = below ? k : owner[i];
+  }
+}
+OUTCROP_SIMD_CLONES
+void lowest_many(std::size_t n, std::int32_t k, const float* fold, float* lowest, std::int32_t* owner) {
+  lowest_loop(n, k, fold, lowest, owner);
+}
+
+/// Polytopes without relief, which are what their folds are: all values first, then each gradient from one polytope.
+void lowest_of_folds(std::span<const PlacedKernel> polytopes, const Points& points, std::span<double> values,
+                     std::span<Vec3> gradients) noexcept {
+  const std::size_t n = points.size();
+  Floats fold, lowest;
+  std::array<std::int32_t, kChunk> owner;
+  std::fill_n(lowest.begin(), n, std::numeric_limits<float>::infinity());
+  std::fill_n(owner.begin(), n, 0);
+  for (std::size_t k = 0; k < polytopes.size(); ++k) {
+    const Relative p(points, polytopes[k].position);
+    polytopes[k].kernel->folded(n, p.x.data(), p.y.data(), p.z.data(), fold.data());
+    const auto number = static_cast<std::int32_t>(k);
+    n <= kFewPoints ? lowest_loop(n, number, fold.data(), lowest.data(), owner.data())
+                    : lowest_many(n, number, fold.data(), lowest.data(), owner.data());
+  }
+  std::copy_n(lowest.data(), n, values.data());
+  if (gradients.empty()) return;
+  std::array<std::uint8_t, kChunk> chosen;
+  Floats x, y, z;
+  std::array<Vec3f, kChunk> gradient;
+  for (std::size_t k = 0; k < polytopes.size(); ++k) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      chosen[count] = static_cast<std::uint8_t>(i);
+      count += owner[i] == static_cast<std::int32_t>(k);
+    }
+    if (count == 0) continue;
+    const auto& [kernel, position] = polytopes[k];
+    for (std::size_t j = 0; j < count; ++j) {
+      x[j] = static_cast<float>(points.x[chosen[j]] - position.x);
+      y[j] = static_cast<float>(points.y[chosen[j]] - position.y);
+      z[j] = static_cast<float>(points.z[chosen[j]] - position.z);
+    }
+    kernel->values(count, x.data(), y.data(), z.data(), fold.data(), gradient.data());
+    for (std::size_t j = 0; j < count; ++j) gradients[chosen[j]] = gradient[j];
   }
 }
 
@@ -239,6 +281,7 @@ PolytopeUnion::PolytopeUnion(std::vector<PolytopeKernel> kernels, std::span<cons
     : kernels_(std::move(kernels)) {
   require(!kernels_.empty() && kernels_.size() == positions.size(), "kernels", "at least 1, as many as positions",
           static_cast<double>(kernels_.size()));
+  polytopes_.reserve(kernels_.size());
   for (std::size_t k = 0; k < kernels_.size(); ++k) {
     polytopes_.push_back({&kernels_[k], positions[k]});
     lipschitz_ = std::max(lipschitz_, kernels_[k].lipschitz());
@@ -247,7 +290,7 @@ PolytopeUnion::PolytopeUnion(std::vector<PolytopeKernel> kernels, std::span<cons
 }
 
 void PolytopeUnion::values(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept {
-  if (polytopes_.size() > 1) std::ranges::fill(values, std::numeric_limits<double>::infinity());
+  if (depth_ > 0.0) std::ranges::fill(values, std::numeric_limits<double>::infinity());
   for (std::size_t first = 0; first < points.size(); first += kChunk) {
     const std::size_t n = std::min(kChunk, points.size() - first);
     const Points some = points.subspan(first, n);
@@ -255,8 +298,8 @@ void PolytopeUnion::values(const Points& points, std::span<double> values, std::
     const std::span<Vec3> slopes = gradients.empty() ? gradients : gradients.subspan(first, n);
     if (polytopes_.size() == 1)
       values_of_one(polytopes_.front(), some, out, slopes);
-    else if (depth_ == 0.0 && gradients.empty())
-      lowest_fold(polytopes_, some, out);
+    else if (depth_ == 0.0)
+      lowest_of_folds(polytopes_, some, out, slopes);
     else
       between_chunk(polytopes_, some, kNoGrowth.data(), {}, out, slopes);
   }
@@ -269,26 +312,38 @@ void PolytopeUnion::between(const Points& points, std::span<const double> floors
 
 Interval PolytopeUnion::bound(const Box& box) const noexcept {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const TurnedBox turned(box);
   Interval result{kInfinity, kInfinity};
-  for (const auto& [kernel, position] : polytopes_) result = min(result, kernel->bound(TurnedBox(box).moved(-position)));
+  for (const auto& [kernel, position] : polytopes_)
+    result = min(result, kernel->bound(turned.moved(-position), result.hi));
   return result;
 }
 
-FieldPtr PolytopeUnion::narrow(const Box& box) const {
+FieldPtr PolytopeUnion::narrow(const Box& box) const { return narrow_where(box, [](const Interval&) { return true; }); }
+
+FieldPtr PolytopeUnion::narrow_to_surface(const Box& box) const {
+  return narrow_where(box, [](const Interval& bound) { return may_change_sign(bound); });
+}
+
+template <class Wanted>
+FieldPtr PolytopeUnion::narrow_where(const Box& box, Wanted&& wanted) const {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const TurnedBox turned(box);
   std::vector<double> lowest;
   lowest.reserve(polytopes_.size());
-  double highest = std::numeric_limits<double>::infinity();
+  Interval all{kInfinity, kInfinity};
   for (const auto& [kernel, position] : polytopes_) {
-    const Interval bound = kernel->bound(TurnedBox(box).moved(-position));
+    const Interval bound = kernel->bound(turned.moved(-position), all.hi);
     lowest.push_back(bound.lo);
-    highest = std::min(highest, bound.hi);
+    all = min(all, bound);
   }
+  if (!wanted(all)) return nullptr;
   std::vector<PolytopeKernel> kept;
   std::vector<Vec3> positions;
   for (std::size_t k = 0; k < polytopes_.size(); ++k) {
-    if (lowest[k] > highest) continue;
+    if (lowest[k] > all.hi) continue;
     positions.push_back(polytopes_[k].position);
-    kept.push_back(kernels_[k].narrow(TurnedBox(box).moved(-positions.back())));
+    kept.push_back(kernels_[k].narrow(turned.moved(-positions.back())));
   }
   return std::make_shared<PolytopeUnion>(std::move(kept), positions);
 }

@@ -46,14 +46,15 @@ constexpr double kLargestGain = 5.85;  // max K over t ∈ (0, 1] is 5.844, at t
 /// 1 / R for smax; 0 for the sharp maximum.
 [[nodiscard]] double inverse_of(double rounding) { return rounding > 0.0 ? 1.0 / rounding : 0.0; }
 
-[[nodiscard]] double smax(double a, double b, double rounding, double inverse) {
+[[nodiscard]] inline double smax(double a, double b, double rounding, double inverse) {
   const double k = std::max(1.0 - std::abs(a - b) * inverse, 0.0);
-  return std::max(a, b) + rounding / 6.0 * k * k * k;
+  return std::max(a, b) + rounding * (1.0 / 6.0) * k * k * k;
 }
 
 /// Distances of planes from a box's centre, and how much farther its corners reach.
+/// @return the largest difference of both.
 OUTCROP_SIMD_CLONES
-void distances_over(std::size_t n, const float* __restrict nx, const float* __restrict ny, const float* __restrict nz,
+double distances_over(std::size_t n, const float* __restrict nx, const float* __restrict ny, const float* __restrict nz,
                     const float* __restrict d, const TurnedBox& box, double* __restrict at_centre,
                     double* __restrict reach) {
   const Vec3 c = box.centre, u = box.half[0], v = box.half[1], w = box.half[2];
@@ -63,6 +64,17 @@ void distances_over(std::size_t n, const float* __restrict nx, const float* __re
     reach[k] = std::fabs(x * u.x + y * u.y + z * u.z) + std::fabs(x * v.x + y * v.y + z * v.z) +
                std::fabs(x * w.x + y * w.y + z * w.z);
   }
+  // Eight maxima at a time: one after the other they would take longer than the rest.
+  std::array<double, 8> highest;
+  highest.fill(-std::numeric_limits<double>::infinity());
+  std::size_t k = 0;
+  for (; k + highest.size() <= n; k += highest.size())
+    for (std::size_t i = 0; i < highest.size(); ++i) {
+      const double low = at_centre[k + i] - reach[k + i];
+      highest[i] = low > highest[i] ? low : highest[i];
+    }
+  for (; k < n; ++k) highest[k % 8] = std::max(highest[k % 8], at_centre[k] - reach[k]);
+  return *std::ranges::max_element(highest);
 }
 
 /// The planes' distances over a box; asked for in the planes' order, since a few are found at a time.
@@ -74,6 +86,8 @@ class PlanesOverBox {
     find(0);
   }
 
+  /// A plane is above this everywhere: the highest such number of those planes that are found first.
+  [[nodiscard]] double highest_low() const { return highest_low_ - around_; }
   [[nodiscard]] double at_centre(std::size_t k) const { return at_centre_[k - first_]; }
   [[nodiscard]] Interval range(std::size_t k) {
     if (k - first_ == kAtATime) find(k);
@@ -87,14 +101,15 @@ class PlanesOverBox {
   void find(std::size_t first) {
     first_ = first;
     const std::size_t n = std::min(kAtATime, planes_.size() - first);
-    distances_over(n, planes_.nx() + first, planes_.ny() + first, planes_.nz() + first, planes_.d() + first, box_,
-                   at_centre_.data(), reach_.data());
+    highest_low_ = distances_over(n, planes_.nx() + first, planes_.ny() + first, planes_.nz() + first,
+                                  planes_.d() + first, box_, at_centre_.data(), reach_.data());
   }
 
   const PackedPlanes& planes_;
   const TurnedBox& box_;
   double around_;
   std::size_t first_ = 0;
+  double highest_low_;
   std::array<double, kAtATime> at_centre_, reach_;
 };
 
@@ -256,10 +271,13 @@ void PolytopeKernel::warped(int n, const float* x, const float* y, const float* 
   for (int i = 0; i < n; ++i) gradients[i] = {carved[0][i], carved[1][i], carved[2][i]};
 }
 
-Interval PolytopeKernel::bound(const TurnedBox& local) const noexcept {
+Interval PolytopeKernel::bound(const TurnedBox& local, double ceiling) const noexcept {
   // smax grows with both arguments, so folding the ends bounds the fold; the fold is 1-Lipschitz, so its value at the
   // centre bounds it too. The warp only carves: c(p) ≤ b(p) ≤ c(p) + amplitude, since c is convex and 1-Lipschitz.
   PlanesOverBox h(planes_, local, 0.0);
+  const double slack = rounding_slack(local.coordinate_sum());
+  // No fold is below one of its planes.
+  if (const double low = h.highest_low() - slack; low >= ceiling) return {low, std::numeric_limits<double>::infinity()};
   const double inverse = inverse_of(rounding_);
   Interval fold = h.range(0);
   double at_centre = h.at_centre(0);
@@ -270,7 +288,6 @@ Interval PolytopeKernel::bound(const TurnedBox& local) const noexcept {
     at_centre = smax(at_centre, h.at_centre(k), rounding_, inverse);
   }
   const double reach = local.radius;
-  const double slack = rounding_slack(local.coordinate_sum());
   return {std::max(fold.lo, at_centre - reach) - slack, std::min(fold.hi, at_centre + reach) + slack + depth()};
 }
 

@@ -92,49 +92,59 @@ Chunk ChunkBuilder::build(const Cell& cell, int level) {
   chunk_.clear();
   shared_.clear();
   shared_number_.clear();
-  descend(cell, level);
+  if (tree_)
+    descend(cell, level);
+  else
+    descend_uniformly(cell.index, level, cell.field->narrow(lattice_.box(cell.index, level)));
   close_border();
   fill_missing_normals();
   return chunk_;
 }
 
-void ChunkBuilder::descend(const Cell& cell, int level) {
-  if (!tree_) {
-    if (level == 0) return visit(cell, level, nullptr);
-    for (const Cell& child : split(lattice_, cell, level)) descend(child, level - 1);
-    return;
-  }
-  const BrickPlace place{cell.index, level};
-  const KnownCell* known = known_->find(BrickTree::key(place));
-  if (tree_->is_split(place)) {
-    const FieldPtr field = known ? known->field : cell.field->narrow(lattice_.box(cell.index, level));
-    for (int octant = 0; octant < 8; ++octant) descend({child_index(cell.index, octant), field}, level - 1);
-  } else if (tree_->is_leaf(place)) {
-    // What balance made is not known to hold surface.
-    if (known || may_hold_surface(*cell.field, lattice_.box(cell.index, level))) visit(cell, level, known);
+void ChunkBuilder::descend_uniformly(const IVec3& index, int level, const FieldPtr& narrowed) {
+  if (level == 0) return visit({index, level}, *narrowed, nullptr);
+  for (int octant = 0; octant < 8; ++octant) {
+    const IVec3 child = child_index(index, octant);
+    if (!lattice_.holds(child, level - 1)) continue;
+    const FieldPtr field = narrowed->narrow_to_surface(lattice_.box(child, level - 1));
+    if (field) descend_uniformly(child, level - 1, field);
   }
 }
 
-void ChunkBuilder::visit(const Cell& cell, int level, const KnownCell* known) {
+void ChunkBuilder::descend(const Cell& cell, int level) {
+  const BrickPlace place{cell.index, level};
+  const KnownCell* known = known_->find(BrickTree::key(place));
+  const Box box = lattice_.box(cell.index, level);
+  if (tree_->is_split(place)) {
+    const FieldPtr field = known ? known->field : cell.field->narrow(box);
+    for (int octant = 0; octant < 8; ++octant) descend({child_index(cell.index, octant), field}, level - 1);
+  } else if (tree_->is_leaf(place)) {
+    // What balance made is not known to hold surface.
+    const FieldPtr field = known ? known->field : cell.field->narrow_to_surface(box);
+    if (field) visit(place, *field, known);
+  }
+}
+
+void ChunkBuilder::visit(const BrickPlace& place, const Field& field, const KnownCell* known) {
   task_.check();
-  const FieldPtr field = known ? known->field : cell.field->narrow(lattice_.box(cell.index, level));
-  Brick brick(lattice_, cell.index, level);
+  const auto& [index, level] = place;
+  Brick brick(lattice_, index, level);
   bool mixed = false, transition = false;
   if (known && !known->values.empty()) {
     mixed = values_.use(known->values, brick);
   } else {
-    mixed = values_.sample(lattice_, *field, brick);
+    mixed = values_.sample(lattice_, field, brick);
     chunk_.evaluations += BrickValues::count(brick);
   }
   if (tree_ && level > 0) {
-    const FinerCells finer = tree_->finer_around({cell.index, level});
+    const FinerCells finer = tree_->finer_around(place);
     transition = finer.any();
     if (transition) {
-      mixed |= transition_.sample(lattice_, *field, brick, values_, finer);
+      mixed |= transition_.sample(lattice_, field, brick, values_, finer);
       chunk_.evaluations += transition_.evaluations();
     }
   }
-  if (mixed) mesh(brick, *field, transition);
+  if (mixed) mesh(brick, field, transition);
 }
 
 void ChunkBuilder::mesh(const Brick& brick, const Field& field, bool transition) {

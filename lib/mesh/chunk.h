@@ -61,8 +61,9 @@ class ChunkBuilder {
   [[nodiscard]] Chunk build(const Cell& cell, int level);
 
  private:
+  void descend_uniformly(const IVec3& index, int level, const FieldPtr& narrowed);
   void descend(const Cell& cell, int level);
-  void visit(const Cell& cell, int level, const KnownCell* known);
+  void visit(const BrickPlace& place, const Field& field, const KnownCell* known);
   void mesh(const Brick& brick, const Field& field, bool transition);
   void find_vertices(const Brick& brick, bool transition);
   void emit_cells(const Brick& brick, bool transition);

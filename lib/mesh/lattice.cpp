@@ -35,10 +35,7 @@ void mark_negative(const double* __restrict values, std::uint8_t* __restrict fla
 
 }  // namespace
 
-bool may_hold_surface(const Field& field, const Box& box) {
-  const Interval range = field.bound(box);
-  return range.lo < 0.0 && range.hi >= 0.0;  // f = 0 is air.
-}
+bool may_hold_surface(const Field& field, const Box& box) { return may_change_sign(field.bound(box)); }
 
 Lattice Lattice::over(const PolygonizeOptions& options) {
   const Box& region = options.region;

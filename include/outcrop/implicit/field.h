@@ -43,6 +43,9 @@ struct Modulus {
   [[nodiscard]] double reach(double f) const noexcept { return (std::abs(f) - slack) / slope; }
 };
 
+/// False where all values of the interval are rock, or all air; f = 0 is air.
+[[nodiscard]] inline bool may_change_sign(const Interval& values) noexcept { return values.lo < 0.0 && values.hi >= 0.0; }
+
 /// A scalar function of space: negative in rock, positive in air, metres.
 ///
 /// A heightfield, one block, ten million replicated blocks and a voxel grid are all Fields to the code above them. A
@@ -81,6 +84,10 @@ class Field : public std::enable_shared_from_this<Field> {
   ///
   /// The result keeps what it needs alive; it may answer anything outside the box.
   [[nodiscard]] virtual FieldPtr narrow(const Box& box) const;
+
+  /// narrow(box), or null where bound(box) says that the surface is not in it: one look where `bound` and `narrow` would
+  /// take the same steps twice. Default: asks both.
+  [[nodiscard]] virtual FieldPtr narrow_to_surface(const Box& box) const;
 
   /// A box outside of which f > 0, where one is known: lets a mesher choose its region.
   [[nodiscard]] virtual std::optional<Box> support() const noexcept;

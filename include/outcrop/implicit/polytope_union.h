@@ -37,9 +37,13 @@ class PolytopeUnion final : public Field {
   [[nodiscard]] Modulus modulus() const noexcept override { return {1.0, depth_}; }
   [[nodiscard]] Interval bound(const Box& box) const noexcept override;
   [[nodiscard]] FieldPtr narrow(const Box& box) const override;
+  [[nodiscard]] FieldPtr narrow_to_surface(const Box& box) const override;
   [[nodiscard]] std::optional<Box> support() const noexcept override;
 
  private:
+  template <class Wanted>
+  [[nodiscard]] FieldPtr narrow_where(const Box& box, Wanted&& wanted) const;
+
   std::vector<PolytopeKernel> kernels_;
   std::vector<PlacedKernel> polytopes_;
   double lipschitz_ = 1.0;

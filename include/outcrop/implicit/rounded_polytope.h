@@ -110,8 +110,10 @@ class PolytopeKernel {
   }
 
   /// Contains b over the box (relative to the centre): fold of plane intervals, tightened by the centre value, widened
-  /// by the warp's amplitude upwards only (the relief only carves).
-  [[nodiscard]] Interval bound(const TurnedBox& local) const noexcept;
+  /// by the warp's amplitude upwards only (the relief only carves). Where b is sure to be at least `ceiling`, whatever
+  /// is quick to find: for who has another polytope below that.
+  [[nodiscard]] Interval bound(const TurnedBox& local,
+                               double ceiling = std::numeric_limits<double>::infinity()) const noexcept;
 
   /// The kernel without the planes that cannot be active in the box: equal to the bit there. Its lipschitz() is the
   /// local one of what is left, often far smaller.
