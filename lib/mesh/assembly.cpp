@@ -51,9 +51,8 @@ Assembly::Joint& Assembly::joint(const BorderVertex& border, bool& first) {
   return joint;
 }
 
-void Assembly::release(const BorderVertex& border) {
-  const Joint* joint = joints_.find(border.key);
-  if (joint->quarters == quarters_around(lattice_, border.key)) joints_.erase(border.key);
+void Assembly::release(const BorderVertex& border, const Joint& joint) {
+  if (joint.quarters == quarters_around(lattice_, border.key)) joints_.erase(border.key);
 }
 
 void Assembly::add(Chunk chunk, ChunkSummary summary) {
@@ -87,7 +86,7 @@ void Assembly::add(Chunk chunk, ChunkSummary summary) {
       }
       record.sides.emplace_back(summary.sides[next_side++].vertex, known.side);
     }
-    release(chunk.border[i]);
+    release(chunk.border[i], known);
   }
   for (; next_side < summary.sides.size(); ++next_side) {
     record.sides.emplace_back(summary.sides[next_side].vertex, static_cast<std::uint32_t>(curves_.vertices.size()));
@@ -169,57 +168,71 @@ void Assembly::finish(const Field& field, const Task& task) {
           options_.resolution);
 }
 
+template <class Keeps>
+std::vector<std::uint32_t> Assembly::numbered(const Chunk& chunk, Keeps&& keeps) {
+  std::vector<std::uint32_t> numbers;
+  numbers.reserve(chunk.positions.size());
+  const auto number_up_to = [&](std::size_t end) {
+    for (std::size_t v = numbers.size(); v < end; ++v) numbers.push_back(keeps(v) ? next_number_++ : kNone);
+  };
+  for (const BorderVertex& b : chunk.border) {
+    number_up_to(b.vertex);
+    bool first = false;
+    Joint& known = joint(b, first);
+    if (!keeps(b.vertex)) {
+      numbers.push_back(kNone);
+    } else {
+      if (first) known.number = next_number_++;
+      numbers.push_back(known.number);
+    }
+    release(b, known);
+  }
+  number_up_to(chunk.positions.size());
+  return numbers;
+}
+
 void Assembly::emit_chunk(std::size_t index, std::span<MeshSink* const> sinks) {
   const ChunkRecord& record = chunks_[index];
   Chunk chunk = store_->get(index, true);
-  std::vector<std::uint32_t> kept_part(record.parts);
-  bool all = true;
-  for (std::uint32_t p = 0; p < record.parts; ++p) {
-    kept_part[p] = parts_.keeps(record.first_part + p);
-    all = all && kept_part[p];
-  }
-  std::vector<std::uint32_t> part_of;
-  if (!all) part_of = find_parts(chunk, lattice_).part_of;
-
-  // The mesh's numbers of the vertices that stay; those are moved together.
-  std::vector<std::uint32_t> numbers(chunk.positions.size()), moved(chunk.positions.size(), kNone);
+  std::vector<bool> kept_part(record.parts);
+  for (std::uint32_t p = 0; p < record.parts; ++p) kept_part[p] = parts_.keeps(record.first_part + p);
+  const bool all = std::find(kept_part.begin(), kept_part.end(), false) == kept_part.end();
   const std::uint32_t first_number = next_number_;
-  std::size_t border = 0;
-  std::uint32_t kept = 0;
-  for (std::uint32_t v = 0; v < chunk.positions.size(); ++v) {
-    const bool on_border = border < chunk.border.size() && chunk.border[border].vertex == v;
-    const bool keep = all || kept_part[part_of[v]];
-    std::uint32_t number = next_number_;
-    if (on_border) {
-      const BorderVertex& b = chunk.border[border++];
-      bool first = false;
-      Joint& known = joint(b, first);
-      if (first) known.number = next_number_;
-      number = known.number;
-      release(b);
-    }
-    if (!keep) continue;
-    if (number == next_number_) ++next_number_;
-    moved[v] = kept;
-    numbers[kept] = number;
-    chunk.positions[kept] = chunk.positions[v];
-    if (options_.normals) chunk.normals[kept] = chunk.normals[v];
-    if (options_.labels) chunk.labels[kept] = chunk.labels[v];
-    ++kept;
+  std::vector<std::uint32_t> numbers;
+  if (all) {
+    numbers = numbered(chunk, [](std::size_t) { return true; });
+  } else {
+    const std::vector<std::uint32_t> part_of = find_parts(chunk, lattice_).part_of;
+    numbers = numbered(chunk, [&](std::size_t v) { return kept_part[part_of[v]]; });
   }
   for (const auto& [vertex, side] : record.sides)
-    if (moved[vertex] != kNone) side_number_[side] = numbers[moved[vertex]];
-  if (!all) {
-    std::size_t triangles = 0;
-    for (const Triangle& t : chunk.triangles)
-      if (moved[t[0]] != kNone) chunk.triangles[triangles++] = {moved[t[0]], moved[t[1]], moved[t[2]]};
-    chunk.triangles.resize(triangles);
-  }
+    if (numbers[vertex] != kNone) side_number_[side] = numbers[vertex];
+  if (!all) drop_unnumbered(chunk, numbers);
   if (chunk.triangles.empty()) return;
-  const auto some = [&](const auto& array) { return std::span(array).first(array.empty() ? 0 : kept); };
-  const MeshPiece piece{some(chunk.positions), some(chunk.normals), some(chunk.labels), some(numbers),
-                        first_number,          chunk.triangles};
+  const MeshPiece piece{chunk.positions, chunk.normals, chunk.labels, numbers, first_number, chunk.triangles};
   for (MeshSink* sink : sinks) sink->add(piece);
+}
+
+void Assembly::drop_unnumbered(Chunk& chunk, std::vector<std::uint32_t>& numbers) {
+  std::vector<std::uint32_t> moved(numbers.size(), kNone);
+  std::uint32_t kept = 0;
+  for (std::uint32_t v = 0; v < numbers.size(); ++v) {
+    if (numbers[v] == kNone) continue;
+    moved[v] = kept;
+    numbers[kept] = numbers[v];
+    chunk.positions[kept] = chunk.positions[v];
+    if (!chunk.normals.empty()) chunk.normals[kept] = chunk.normals[v];
+    if (!chunk.labels.empty()) chunk.labels[kept] = chunk.labels[v];
+    ++kept;
+  }
+  numbers.resize(kept);
+  chunk.positions.resize(kept);
+  if (!chunk.normals.empty()) chunk.normals.resize(kept);
+  if (!chunk.labels.empty()) chunk.labels.resize(kept);
+  std::size_t triangles = 0;
+  for (const Triangle& t : chunk.triangles)
+    if (moved[t[0]] != kNone) chunk.triangles[triangles++] = {moved[t[0]], moved[t[1]], moved[t[2]]};
+  chunk.triangles.resize(triangles);
 }
 
 void Assembly::emit_walls(std::span<MeshSink* const> sinks) const {

@@ -69,8 +69,12 @@ class Assembly {
   };
   /// The joint of a border vertex; erased by release() when all around its edge have come.
   Joint& joint(const BorderVertex& border, bool& first);
-  void release(const BorderVertex& border);
+  void release(const BorderVertex& border, const Joint& joint);
   void add_walls(const Field& field, const Task& task);
+  /// The mesh's number of each vertex of the next chunk; kNone for those that go.
+  template <class Keeps>
+  [[nodiscard]] std::vector<std::uint32_t> numbered(const Chunk& chunk, Keeps&& keeps);
+  static void drop_unnumbered(Chunk& chunk, std::vector<std::uint32_t>& numbers);
   void emit_chunk(std::size_t index, std::span<MeshSink* const> sinks);
   void emit_walls(std::span<MeshSink* const> sinks) const;
   void for_each_triangle(const PartList::Visit& visit);
