@@ -196,15 +196,17 @@ std::uint32_t ChunkBuilder::shared_vertex_on(const IVec3& from, const IVec3& alo
 
 void ChunkBuilder::emit_cells(const Brick& brick, bool transition) {
   static const SlotCases cases;
+  Triangle* end = brick_triangles_.data();
   brick.for_each_mixed_cell([&](int node, int cube_case) {
     if (transition && transition_.is_coned(node)) return;
     ++chunk_.cells;
     const std::uint32_t* const vertex = &vertex_[node];
     for (int i = cases.first[cube_case]; i < cases.first[cube_case + 1]; ++i) {
       const auto& slot = cases.triangles[i].slot;
-      chunk_.triangles.push_back({vertex[slot[0]], vertex[slot[1]], vertex[slot[2]]});
+      *end++ = {vertex[slot[0]], vertex[slot[1]], vertex[slot[2]]};
     }
   });
+  chunk_.triangles.insert(chunk_.triangles.end(), brick_triangles_.data(), end);
 }
 
 void ChunkBuilder::emit_transition(const Brick& brick) {

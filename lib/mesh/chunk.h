@@ -9,6 +9,7 @@
 #include "flat_map.h"
 #include "lattice.h"
 #include "outcrop/core/task.h"
+#include "outcrop/mesh/marching_cubes.h"
 #include "refine.h"
 #include "roots.h"
 #include "transition.h"
@@ -89,6 +90,8 @@ class ChunkBuilder {
   FlatMap<std::uint32_t> shared_number_;  ///< By edge: the place in `shared_`, and 1.
   FlatMap<std::uint32_t> half_vertices_;  ///< Of one brick, by half edge.
   std::array<std::uint32_t, 3 * kNodes> vertex_{};
+  /// Of one brick; loops around a cell's twelve edges make less than twelve triangles.
+  std::vector<Triangle> brick_triangles_ = std::vector<Triangle>(kCubeEdges * kBrickCells * kBrickCells * kBrickCells);
 };
 
 }  // namespace outcrop::meshing

@@ -17,7 +17,20 @@ inline constexpr int kNodes = kBrickNodes * kBrickNodes * kBrickNodes;
 inline constexpr int kStride[3] = {1, kBrickNodes, kBrickNodes * kBrickNodes};
 
 /// Where node i + 9 j + 81 k is in its brick: (i, j, k).
-[[nodiscard]] inline IVec3 node_place(int node) noexcept { return {node % 9, node / 9 % 9, node / 81}; }
+[[nodiscard]] inline IVec3 node_place(int node) noexcept {
+  struct Place {
+    std::uint8_t x, y, z;
+  };
+  static constexpr auto kPlaces = [] {
+    std::array<Place, kNodes> places{};
+    for (int n = 0; n < kNodes; ++n)
+      places[n] = {static_cast<std::uint8_t>(n % 9), static_cast<std::uint8_t>(n / 9 % 9),
+                   static_cast<std::uint8_t>(n / 81)};
+    return places;
+  }();
+  const Place& place = kPlaces[node];
+  return {place.x, place.y, place.z};
+}
 
 /// Bit i + 9 j + 81 k stands for node (i, j, k), or for an edge or a cell that starts there.
 class NodeSet {
