@@ -209,8 +209,12 @@ inline void check_between(const Field& field, const Box& box, Rng& rng) {
   }
 }
 
-/// narrow(box) equals in the box, keeps the contract there, and so does what it is narrowed to in turn.
+/// narrow(box) equals in the box, keeps the contract there, and so does what it is narrowed to in turn;
+/// narrow_to_surface(box) equals, too, and is there where bound(box) leaves room for a surface.
 inline void check_narrow(const Field& field, const Box& box, double slack, Rng& rng) {
+  const FieldPtr at_surface = field.narrow_to_surface(box);
+  ASSERT_EQ(at_surface != nullptr, may_change_sign(field.bound(box))) << "narrowing to the surface";
+  if (at_surface) check_equal_in(field, *at_surface, box, rng);
   FieldPtr narrowed = field.narrow(box);
   Box inner = box;
   for (int depth = 0; depth < 3; ++depth) {
