@@ -86,21 +86,14 @@ inline std::size_t choose(std::size_t n, const float* fold, double slack, const 
 
 /// The largest |x| + |y| + |z|. Floats that are not negative compare as their bits do, and a maximum of integers may be
 /// taken in any order, so in vectors.
-[[gnu::always_inline]] inline float farthest_loop(std::size_t n, const float* __restrict x, const float* __restrict y,
-                                                  const float* __restrict z) {
+OUTCROP_SIMD_CLONES
+float farthest(std::size_t n, const float* __restrict x, const float* __restrict y, const float* __restrict z) {
   std::int32_t largest = 0;
   for (std::size_t i = 0; i < n; ++i) {
     const auto bits = std::bit_cast<std::int32_t>(std::fabs(x[i]) + std::fabs(y[i]) + std::fabs(z[i]));
     largest = bits > largest ? bits : largest;
   }
   return std::bit_cast<float>(largest);
-}
-OUTCROP_SIMD_CLONES
-float farthest_many(std::size_t n, const float* x, const float* y, const float* z) {
-  return farthest_loop(n, x, y, z);
-}
-inline float farthest(std::size_t n, const float* x, const float* y, const float* z) {
-  return n <= kFewPoints ? farthest_loop(n, x, y, z) : farthest_many(n, x, y, z);
 }
 
 /// A chunk of points relative to a polytope's centre.

@@ -71,9 +71,15 @@ class NodeSet {
       for (std::uint64_t bits = words_[word]; bits != 0; bits &= bits - 1) visit(64 * word + std::countr_zero(bits));
   }
 
-  friend NodeSet operator&(NodeSet a, const NodeSet& b) noexcept { return a.combine(b, [](auto x, auto y) { return x & y; }); }
-  friend NodeSet operator|(NodeSet a, const NodeSet& b) noexcept { return a.combine(b, [](auto x, auto y) { return x | y; }); }
-  friend NodeSet operator^(NodeSet a, const NodeSet& b) noexcept { return a.combine(b, [](auto x, auto y) { return x ^ y; }); }
+  friend NodeSet operator&(NodeSet a, const NodeSet& b) noexcept {
+    return a.combine(b, [](auto x, auto y) { return x & y; });
+  }
+  friend NodeSet operator|(NodeSet a, const NodeSet& b) noexcept {
+    return a.combine(b, [](auto x, auto y) { return x | y; });
+  }
+  friend NodeSet operator^(NodeSet a, const NodeSet& b) noexcept {
+    return a.combine(b, [](auto x, auto y) { return x ^ y; });
+  }
   friend bool operator==(const NodeSet& a, const NodeSet& b) noexcept = default;
 
   static constexpr int kWords = (kNodes + 63) / 64;
