@@ -283,7 +283,9 @@ PolytopeUnion::PolytopeUnion(std::vector<PolytopeKernel> kernels, std::span<cons
 }
 
 void PolytopeUnion::values(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept {
-  if (depth_ > 0.0) std::ranges::fill(values, std::numeric_limits<double>::infinity());
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  if (depth_ > 0.0 || points.size() == 1) std::ranges::fill(values, kInfinity);
+  if (points.size() == 1) return between_one(polytopes_, points[0], 0.0, -kInfinity, values[0], gradients);
   for (std::size_t first = 0; first < points.size(); first += kChunk) {
     const std::size_t n = std::min(kChunk, points.size() - first);
     const Points some = points.subspan(first, n);
