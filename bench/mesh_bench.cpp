@@ -169,15 +169,15 @@ FieldPtr outcrop_on_hills() {
   return outcrop::union_of({std::make_shared<Ground>(), outcrop::intersection_of({inside, tile(true)})});
 }
 
-/// Off the surface by |f| / |∇f|, for points spread over the area: mean and root mean square.
-std::array<double, 2> errors(const outcrop::Field& field, const outcrop::TriangleMesh& mesh) {
+/// Off the surface by |f| / |∇f|, for points spread over the area: mean, root mean square, largest.
+std::array<double, 3> errors(const outcrop::Field& field, const outcrop::TriangleMesh& mesh) {
   constexpr std::size_t kPoints = 200'000;
   std::vector<double> area;
   const auto corner = [&](std::uint32_t v) { return mesh.origin + Vec3(mesh.positions[v]); };
   for (const auto& t : mesh.triangles)
     area.push_back(glm::length(glm::cross(corner(t[1]) - corner(t[0]), corner(t[2]) - corner(t[0]))));
   std::partial_sum(area.begin(), area.end(), area.begin());
-  double sum = 0.0, squares = 0.0;
+  double sum = 0.0, squares = 0.0, largest = 0.0;
   for (std::size_t i = 0; i < kPoints; ++i) {
     outcrop::Rng rng(1, "points", i);
     const double place = (static_cast<double>(i) + rng.uniform()) / kPoints * area.back();
@@ -188,8 +188,9 @@ std::array<double, 2> errors(const outcrop::Field& field, const outcrop::Triangl
     const double error = std::abs(field.value(p)) / std::max(glm::length(field.gradient(p)), 0.1);
     sum += error;
     squares += error * error;
+    largest = std::max(largest, error);
   }
-  return {sum / kPoints, std::sqrt(squares / kPoints)};
+  return {sum / kPoints, std::sqrt(squares / kPoints), largest};
 }
 
 void adaptivity(benchmark::State& state) {
@@ -197,14 +198,17 @@ void adaptivity(benchmark::State& state) {
   PolygonizeOptions options{.region = {Vec3(0.0), {80, 80, 20}}, .resolution = 0.1};
   const auto uniform = outcrop::polygonize(*field, options).mesh;
   options.tolerance = 0.01 * static_cast<double>(state.range(0)) * options.resolution;
+  options.crisp = state.range(1) != 0;
   outcrop::TriangleMesh adaptive;
   for (auto _ : state) adaptive = outcrop::polygonize(*field, options).mesh;
   report(state, adaptive.triangles.size());
   const auto before = errors(*field, uniform), after = errors(*field, adaptive);
   state.counters["uniform_error_mean"] = before[0] / options.resolution;
   state.counters["uniform_error_rms"] = before[1] / options.resolution;
+  state.counters["uniform_error_max"] = before[2] / options.resolution;
   state.counters["error_mean"] = after[0] / options.resolution;
   state.counters["error_rms"] = after[1] / options.resolution;
+  state.counters["error_max"] = after[2] / options.resolution;
   state.counters["fewer"] =
       static_cast<double>(uniform.triangles.size()) / static_cast<double>(adaptive.triangles.size());
 }
@@ -232,10 +236,10 @@ BENCHMARK_CAPTURE(mesh_tile, adaptive, 0.05)
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime();
 BENCHMARK(adaptivity)
-    ->ArgNames({"tolerance_percent"})
-    ->Arg(1)
-    ->Arg(4)
-    ->Arg(10)
+    ->ArgNames({"tolerance_percent", "crisp"})
+    ->ArgsProduct({{1, 4, 10}, {0, 1}})
+    ->Args({0, 1})
+    ->Args({6, 1})
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime();
 BENCHMARK(budget)->ArgNames({"wanted"})->Arg(200'000)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();

@@ -48,6 +48,7 @@ int main(int argc, char** argv) {
                  "Metres that triangles may lie off the surface where cells are wider than the resolution; 0: none is; "
                  "default: a tenth of the resolution where less than half of the ground is steep, else 0");
   app.add_option("--triangles", run.triangles, "About as many triangles as are wanted, instead of a tolerance");
+  app.add_flag("--crisp", run.crisp, "Put vertices on the creases that run through the finest cells");
   app.add_flag("--solid", run.solid, "Close the sheet with walls and a floor");
   app.add_option("--seed", run.seed, "Same seed, same rock")->capture_default_str();
 

@@ -20,6 +20,7 @@ int main(int argc, char** argv) {
                  "Metres that triangles may lie off the surface where cells are wider than the resolution; 0: none is")
       ->capture_default_str();
   app.add_option("--triangles", run.triangles, "About as many triangles as are wanted, instead of a tolerance");
+  app.add_flag("--crisp", run.crisp, "Put vertices on the creases that run through the finest cells");
   std::optional<std::array<double, 6>> region;
   app.add_option("--region", region, "X0 Y0 Z0 X1 Y1 Z1, metres; default: the scene's, else where the solid is");
 

@@ -335,6 +335,7 @@ class Runner {
             .resolution = report_.options.resolution,
             .tolerance = tolerance_,
             .triangles = run_.triangles,
+            .crisp = run_.crisp,
             .border = run_.solid ? Border::Closed : Border::Open,
             .parts = Parts::Grounded,
             .memory_limit = report_.memory_limit};

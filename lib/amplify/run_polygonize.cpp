@@ -63,6 +63,7 @@ PolygonizeOptions mesh_options(const PolygonizeRun& run, const Scene& scene) {
           .resolution = resolution,
           .tolerance = run.tolerance,
           .triangles = run.triangles,
+          .crisp = run.crisp,
           .border = run.border,
           .parts = run.parts,
           .keep_voids = run.keep_voids,

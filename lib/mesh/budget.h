@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
+#include <optional>
 
 #include "error_samples.h"
 #include "outcrop/core/task.h"
@@ -9,8 +11,8 @@
 
 namespace outcrop::meshing {
 
-/// Finds the tolerance, and where all of the finest cells would not do the resolution, that give about
-/// `options.triangles` triangles.
+/// Finds the tolerance that gives about `options.triangles` triangles; where all of the finest cells would not do a
+/// finer resolution, and where all of the coarsest would be too many a coarser one.
 class TriangleBudget {
  public:
   TriangleBudget(const Field& field, const PolygonizeOptions& options, const Task& task);
@@ -20,12 +22,23 @@ class TriangleBudget {
   bool refit(std::size_t made);
 
  private:
+  /// A tolerance that was tried, and the triangles that it gave over those wanted.
+  struct Tried {
+    double tolerance, ratio;
+  };
   void fit();
+  void take_samples();
+  void look_between(const Tried& fine, const Tried& coarse);
 
+  const Field& field_;
+  const Task& task_;
   PolygonizeOptions options_;
-  ErrorSamples samples_;
+  std::optional<ErrorSamples> samples_;
   double wanted_;
   double correction_ = kBalance;  ///< Triangles made over triangles expected.
+  std::optional<Tried> fine_, coarse_;  ///< Closest with too many, and with too few.
+  PolygonizeOptions best_;
+  double best_miss_ = std::numeric_limits<double>::infinity();
   int fits_ = 0;
 };
 

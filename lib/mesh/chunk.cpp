@@ -19,6 +19,7 @@ struct SlotTriangle {
 struct SlotCases {
   std::vector<SlotTriangle> triangles;
   std::array<std::uint16_t, 257> first{};
+  std::array<std::vector<std::uint32_t>, 256> loop;  ///< Slots around the triangles, where one polygon bounds them.
 
   SlotCases() {
     for (int c = 0; c < 256; ++c) {
@@ -32,8 +33,17 @@ struct SlotCases {
       }
     }
     first[256] = static_cast<std::uint16_t>(triangles.size());
+    for (int c = 0; c < 256; ++c) {
+      std::vector<Triangle> slots;
+      for (int i = first[c]; i < first[c + 1]; ++i)
+        slots.push_back({triangles[i].slot[0], triangles[i].slot[1], triangles[i].slot[2]});
+      loop[c] = boundary_loop(slots);
+    }
   }
 };
+
+/// In place of a triangle that a fan replaced.
+constexpr Triangle kReplaced{0, 0, 0};
 
 /// Twice the middle's coordinates and the direction: no two edges of a mesh share both, whatever their lengths.
 constexpr int kKeyBits = 19, kDirectionBits = 5;
@@ -92,12 +102,15 @@ Chunk ChunkBuilder::build(const Cell& cell, int level) {
   chunk_.clear();
   shared_.clear();
   shared_number_.clear();
+  creases_.clear();
   if (tree_)
     descend(cell, level);
   else
     descend_uniformly(cell.index, level, cell.field->narrow(lattice_.box(cell.index, level)));
+  join_creases(lattice_, creases_, chunk_.positions, chunk_.normals, chunk_.triangles);
   close_border();
   fill_missing_normals();
+  if (!options_.normals) chunk_.normals.clear();
   return chunk_;
 }
 
@@ -150,10 +163,19 @@ void ChunkBuilder::visit(const BrickPlace& place, const Field& field, const Know
 void ChunkBuilder::mesh(const Brick& brick, const Field& field, bool transition) {
   ++chunk_.bricks[brick.level];
   solver_.clear();
+  fans_.clear();
+  fan_source_.clear();
+  const std::size_t first = chunk_.triangles.size();
   find_vertices(brick, transition);
-  if (transition) emit_transition(brick);
+  if (transition) gather_coned(brick);
   emit_cells(brick, transition);
   place(field);
+  if (fans_.size() == 0) return;
+  emit_fans(brick, field);
+  if (!options_.crisp || brick.level > 0) return;
+  const auto begin = chunk_.triangles.begin() + static_cast<std::ptrdiff_t>(first);
+  const auto is_replaced = [](const Triangle& t) { return t[0] == t[1]; };
+  chunk_.triangles.erase(std::remove_if(begin, chunk_.triangles.end(), is_replaced), chunk_.triangles.end());
 }
 
 void ChunkBuilder::find_vertices(const Brick& brick, bool transition) {
@@ -196,26 +218,94 @@ std::uint32_t ChunkBuilder::shared_vertex_on(const IVec3& from, const IVec3& alo
 
 void ChunkBuilder::emit_cells(const Brick& brick, bool transition) {
   static const SlotCases cases;
+  const bool crisp = options_.crisp && brick.level == 0;
+  std::array<std::uint32_t, kCubeEdges> loop;
   Triangle* end = brick_triangles_.data();
   brick.for_each_mixed_cell([&](int node, int cube_case) {
     if (transition && transition_.is_coned(node)) return;
     ++chunk_.cells;
     const std::uint32_t* const vertex = &vertex_[node];
+    Triangle* const begin = end;
     for (int i = cases.first[cube_case]; i < cases.first[cube_case + 1]; ++i) {
       const auto& slot = cases.triangles[i].slot;
       *end++ = {vertex[slot[0]], vertex[slot[1]], vertex[slot[2]]};
     }
+    const auto& slots = cases.loop[cube_case];
+    if (!crisp || slots.empty()) return;
+    std::transform(slots.begin(), slots.end(), loop.begin(), [&](std::uint32_t slot) { return vertex[slot]; });
+    fans_.add(brick.first() + IVec3(node % 9, node / 9 % 9, node / 81), 1, std::span(loop).first(slots.size()),
+              {begin, end}, options_.tolerance);
+    fan_source_.push_back(chunk_.triangles.size() + static_cast<std::size_t>(begin - brick_triangles_.data()));
   });
   chunk_.triangles.insert(chunk_.triangles.end(), brick_triangles_.data(), end);
 }
 
-void ChunkBuilder::emit_transition(const Brick& brick) {
-  chunk_.cells += transition_.mixed_cells();
+void ChunkBuilder::gather_coned(const Brick& brick) {
   half_vertices_.clear();
-  transition_.for_each_triangle([&](const HalfEdge& a, const HalfEdge& b, const HalfEdge& c) {
+  const int edge = 1 << brick.level;
+  std::vector<std::uint32_t> edges;
+  std::vector<Triangle> triangles;
+  for (std::size_t cell = 0; cell < transition_.mixed().size(); ++cell) {
+    ++chunk_.cells;
+    edges.clear();
+    triangles.clear();
+    const auto number = [&](const HalfEdge& e) {
+      const std::uint32_t key = static_cast<std::uint32_t>(e[0]) << 16 | static_cast<std::uint32_t>(e[1]);
+      const auto found = static_cast<std::uint32_t>(std::find(edges.begin(), edges.end(), key) - edges.begin());
+      if (found == edges.size()) edges.push_back(key);
+      return found;
+    };
+    transition_.for_each_triangle(cell, [&](const HalfEdge& a, const HalfEdge& b, const HalfEdge& c) {
+      const std::uint32_t u = number(a), v = number(b), w = number(c);
+      triangles.push_back({u, v, w});
+    });
+    std::vector<std::uint32_t> loop = boundary_loop(triangles);
+    if (loop.empty()) {
+      emit_coned(brick, cell);
+      continue;
+    }
+    for (std::uint32_t& v : loop) v = half_vertex(brick, {int(edges[v] >> 16), int(edges[v] & 0xFFFF)});
+    fans_.add(brick.first() + edge * transition_.mixed()[cell], edge, loop, {}, options_.tolerance);
+    fan_source_.push_back(cell);
+  }
+}
+
+void ChunkBuilder::emit_coned(const Brick& brick, std::size_t cell) {
+  transition_.for_each_triangle(cell, [&](const HalfEdge& a, const HalfEdge& b, const HalfEdge& c) {
     const std::uint32_t u = half_vertex(brick, a), v = half_vertex(brick, b), w = half_vertex(brick, c);
     chunk_.triangles.push_back({u, v, w});
   });
+}
+
+void ChunkBuilder::emit_fans(const Brick& brick, const Field& field) {
+  chunk_.evaluations += fans_.solve(lattice_, field, chunk_.positions, chunk_.normals);
+  solver_.clear();
+  std::vector<double> x, y, z;
+  for (std::size_t i = 0; i < fans_.size(); ++i) {
+    const CellFans::Fan& fan = fans_.fan(i);
+    const std::size_t replaced = fans_.replaced(i);
+    if (!fan.taken) continue;
+    const auto apex = static_cast<std::uint32_t>(chunk_.positions.size());
+    chunk_.positions.push_back(fan.position);
+    chunk_.normals.push_back(fan.crease ? Vec3f(0.0f) : Vec3f(glm::normalize(fan.gradient)));
+    for (std::size_t t = 0; t < replaced; ++t) chunk_.triangles[fan_source_[i] + t] = kReplaced;
+    const auto loop = fans_.loop(i);
+    for (std::size_t v = 0; v < loop.size(); ++v)
+      chunk_.triangles.push_back({loop[v], loop[(v + 1) % loop.size()], apex});
+    if (fan.crease && brick.level == 0) creases_.push_back({apex, fans_.first(i), fan.up});
+    const Vec3 p = lattice_.origin + Vec3(fan.position);
+    x.push_back(p.x);
+    y.push_back(p.y);
+    z.push_back(p.z);
+  }
+  if (options_.labels) {
+    const std::size_t start = chunk_.labels.size();
+    chunk_.labels.resize(start + x.size());
+    field.labels({x, y, z}, std::span(chunk_.labels).subspan(start));
+  }
+  for (std::size_t i = 0; i < fans_.size(); ++i)
+    if (!fans_.fan(i).taken && fans_.replaced(i) == 0) emit_coned(brick, fan_source_[i]);
+  if (solver_.size() > 0) place(field);
 }
 
 std::uint32_t ChunkBuilder::half_vertex(const Brick& brick, const HalfEdge& edge) {
@@ -243,7 +333,7 @@ std::uint32_t ChunkBuilder::half_vertex(const Brick& brick, const HalfEdge& edge
 
 void ChunkBuilder::place(const Field& field) {
   const std::size_t n = solver_.size(), start = chunk_.positions.size();
-  chunk_.evaluations += solver_.solve(lattice_, field, options_.normals);
+  chunk_.evaluations += solver_.solve(lattice_, field, options_.normals || options_.crisp || tree_);
   for (std::size_t i = 0; i < n; ++i) chunk_.positions.push_back(solver_.local(i));
   for (const Vec3& g : solver_.gradients()) {
     const double length = glm::length(g);

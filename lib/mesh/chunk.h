@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "brick_tree.h"
+#include "cell_fan.h"
 #include "flat_map.h"
 #include "lattice.h"
 #include "outcrop/core/task.h"
@@ -68,7 +69,9 @@ class ChunkBuilder {
   void mesh(const Brick& brick, const Field& field, bool transition);
   void find_vertices(const Brick& brick, bool transition);
   void emit_cells(const Brick& brick, bool transition);
-  void emit_transition(const Brick& brick);
+  void gather_coned(const Brick& brick);
+  void emit_coned(const Brick& brick, std::size_t cell);
+  void emit_fans(const Brick& brick, const Field& field);
   [[nodiscard]] std::uint32_t half_vertex(const Brick& brick, const HalfEdge& edge);
   std::uint32_t vertex_on(const IVec3& from, const IVec3& along, double f_a, double f_b);
   std::uint32_t shared_vertex_on(const IVec3& from, const IVec3& along, double f_a, double f_b, std::uint64_t key,
@@ -86,6 +89,9 @@ class ChunkBuilder {
   BrickValues values_;
   TransitionCells transition_;
   RootSolver solver_;
+  CellFans fans_;
+  std::vector<Apex> creases_;
+  std::vector<std::size_t> fan_source_;   ///< Of each fan: the first triangle that it replaces, or the coned cell.
   std::vector<BorderVertex> shared_;      ///< Vertices on faces of bricks, in order.
   FlatMap<std::uint32_t> shared_number_;  ///< By edge: the place in `shared_`, and 1.
   FlatMap<std::uint32_t> half_vertices_;  ///< Of one brick, by half edge.

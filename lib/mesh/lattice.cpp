@@ -14,17 +14,25 @@ namespace {
 
 /// A size that is whole cells but for rounding gets no extra cell.
 constexpr double kRounding = 1e-6;
-/// Levels are limited so that this many coarsest cells lie along the shorter side: rounding the number of cells up to
-/// whole coarsest ones then costs at most a sixteenth of a cell's edge.
-constexpr int kCoarsestAlong = 16;
+/// Levels are limited so that rounding the number of cells up to whole coarsest ones costs at most this share of a
+/// cell's edge, and so that at least so many coarsest cells lie along the shorter side.
+constexpr double kMostShrinking = 1.0 / 16.0;
+constexpr int kCoarsestAlong = 12;
+
+int rounded_up(int cells, int level) { return (((cells - 1) >> level) + 1) << level; }
 
 int coarsest_level(const PolygonizeOptions& options, const IVec3& cells) {
   require(std::isfinite(options.tolerance) && options.tolerance >= 0.0, "tolerance", "a number of metres >= 0",
           options.tolerance);
   require(options.levels >= 0 && options.levels <= kMaxLevels, "levels", "0 to 8", options.levels);
   if (options.tolerance == 0.0) return 0;
-  const int along = std::min(cells.x, cells.y) / kCoarsestAlong;
-  return along == 0 ? 0 : std::min(options.levels, static_cast<int>(std::bit_width(static_cast<unsigned>(along))) - 1);
+  const auto fits = [&](int along, int level) {
+    const int whole = rounded_up(along, level);
+    return whole >> level >= kCoarsestAlong && whole - along <= kMostShrinking * whole;
+  };
+  int level = options.levels;
+  while (level > 0 && !(fits(cells.x, level) && fits(cells.y, level))) --level;
+  return level;
 }
 
 /// flags[n] = 1 where values[n] < 0, of 9³.
@@ -63,7 +71,7 @@ Lattice Lattice::over(const PolygonizeOptions& options) {
   lattice.coarsest = coarsest_level(options, lattice.cells);
   if (lattice.coarsest == 0) return lattice;
   for (int axis = 0; axis < 3; ++axis) {
-    lattice.cells[axis] = (((lattice.cells[axis] - 1) >> lattice.coarsest) + 1) << lattice.coarsest;
+    lattice.cells[axis] = rounded_up(lattice.cells[axis], lattice.coarsest);
     // Sideways the mesh ends where it was asked to end; upwards there is room.
     if (axis < 2) lattice.step[axis] = (region.hi[axis] - region.lo[axis]) / lattice.cells[axis];
   }

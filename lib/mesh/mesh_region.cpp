@@ -141,15 +141,16 @@ void reserve(std::vector<T>& array, std::size_t count) {
 
 }  // namespace
 
-int chunk_level(const Lattice& lattice) noexcept {
+int chunk_level(const Lattice& lattice, bool crisp) noexcept {
   const int root = root_level(lattice);
-  if (lattice.coarsest == 0) return std::clamp(root - kLevelsAboveChunks, 0, kChunkLevel);
+  // Creases are joined within chunks alone.
+  if (lattice.coarsest == 0 && !crisp) return std::clamp(root - kLevelsAboveChunks, 0, kChunkLevel);
   return std::min(root, std::max(kChunkLevel, lattice.coarsest + 1));
 }
 
-std::vector<Cell> chunk_cells(const Field& field, const Lattice& lattice, const Task& task) {
+std::vector<Cell> chunk_cells(const Field& field, const Lattice& lattice, int chunk, const Task& task) {
   std::vector<Cell> cells = root_cells(lattice, field);
-  for (int level = root_level(lattice); level > chunk_level(lattice); --level) {
+  for (int level = root_level(lattice); level > chunk; --level) {
     const auto parts = parallel_map(
         cells.size(), [&](std::size_t i) { return split(lattice, cells[i], level); }, task);
     cells.clear();
@@ -160,8 +161,8 @@ std::vector<Cell> chunk_cells(const Field& field, const Lattice& lattice, const 
 
 Assembly mesh_region(const Field& field, const Lattice& lattice, const PolygonizeOptions& options,
                      const PieceOptions& pieces, const Task& task, const ForcedSplits& forced) {
-  const int level = chunk_level(lattice);
-  std::vector<Cell> cells = chunk_cells(field, lattice, task);
+  const int level = chunk_level(lattice, options.crisp);
+  std::vector<Cell> cells = chunk_cells(field, lattice, level, task);
   const bool uniform = lattice.coarsest == 0;
   const AssemblyNeeds needs(options);
   Assembly assembly(lattice, options, pieces.spool.empty() ? memory_store() : disk_store(pieces.spool));

@@ -17,10 +17,10 @@ namespace outcrop::meshing {
 [[nodiscard]] Assembly mesh_region(const Field& field, const Lattice& lattice, const PolygonizeOptions& options,
                                    const PieceOptions& pieces, const Task& task, const ForcedSplits& forced = {});
 
-/// Octree cells of this level are the units of work.
-[[nodiscard]] int chunk_level(const Lattice& lattice) noexcept;
+/// Octree cells of this level are the units of work; larger ones where creases are to be joined.
+[[nodiscard]] int chunk_level(const Lattice& lattice, bool crisp) noexcept;
 /// Those that may hold surface, in Morton order.
-[[nodiscard]] std::vector<Cell> chunk_cells(const Field& field, const Lattice& lattice, const Task& task);
+[[nodiscard]] std::vector<Cell> chunk_cells(const Field& field, const Lattice& lattice, int chunk, const Task& task);
 
 /// Collects a mesh in memory.
 class MeshCollector final : public MeshSink {

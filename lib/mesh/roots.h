@@ -14,7 +14,7 @@ namespace outcrop::meshing {
 /// passes through a node, not even after rounding to float.
 inline constexpr double kEndShare = 0.02;
 
-/// Cuts edges between rock and air, in a few batches.
+/// Cuts edges, and other lines, between rock and air, in a few batches.
 class RootSolver {
  public:
   void clear() noexcept { count_ = 0; }
@@ -38,6 +38,10 @@ class RootSolver {
   /// Where the roots are, world; kEndShare to 1 − kEndShare of their edges.
   [[nodiscard]] Points places() const noexcept {
     return {std::span(world_[0]).first(count_), std::span(world_[1]).first(count_), std::span(world_[2]).first(count_)};
+  }
+  /// The same in units of the lattice.
+  [[nodiscard]] Vec3 index(std::size_t i) const noexcept {
+    return {from_[0][i] + t_[i] * along_[0][i], from_[1][i] + t_[i] * along_[1][i], from_[2][i] + t_[i] * along_[2][i]};
   }
   /// The same as meshes store it.
   [[nodiscard]] Vec3f local(std::size_t i) const noexcept {

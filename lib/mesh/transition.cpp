@@ -243,13 +243,16 @@ bool TransitionCells::sample(const Lattice& lattice, const Field& field, const B
   for (const auto& [centre, corner] : unmixed)
     if ((values_[centre] < 0.0) != (values_[corner] < 0.0)) values_[centre] = values_[corner];
 
-  for (const IVec3& cell : mixed_)
+  first_piece_ = {0};
+  for (const IVec3& cell : mixed_) {
     for_each_piece(cell, finer, [&](const Piece& piece) {
       const int corners = piece.tetrahedron ? 4 : 5;
       int rock = 0;
       for (int i = 0; i < corners; ++i) rock += values_[piece.corners[i]] < 0.0;
       if (rock > 0 && rock < corners) pieces_.push_back(piece);
     });
+    first_piece_.push_back(pieces_.size());
+  }
   return !pieces_.empty();
 }
 

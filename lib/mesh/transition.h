@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "brick_tree.h"
@@ -44,12 +45,13 @@ class TransitionCells {
   [[nodiscard]] unsigned divided(int axis, int j, int k) const noexcept { return divided_[(axis * 9 + k) * 9 + j]; }
   [[nodiscard]] double at(int half) const noexcept { return values_[half]; }
   [[nodiscard]] std::size_t evaluations() const noexcept { return evaluations_; }
-  [[nodiscard]] std::size_t mixed_cells() const noexcept { return mixed_.size(); }
 
-  /// Calls emit(edge, edge, edge) for each triangle of the coned cells, counter-clockwise seen from the air.
+  /// Those cells, in the brick.
+  [[nodiscard]] std::span<const IVec3> mixed() const noexcept { return mixed_; }
+  /// Calls emit(edge, edge, edge) for each triangle of mixed()[cell], counter-clockwise seen from the air.
   template <class Emit>
-  void for_each_triangle(Emit&& emit) const {
-    for (const Piece& piece : pieces_) emit_piece(piece, emit);
+  void for_each_triangle(std::size_t cell, Emit&& emit) const {
+    for (std::size_t i = first_piece_[cell]; i < first_piece_[cell + 1]; ++i) emit_piece(pieces_[i], emit);
   }
 
  private:
@@ -88,6 +90,7 @@ class TransitionCells {
   std::vector<IVec3> cells_, mixed_;
   std::vector<int> missing_;
   std::vector<Piece> pieces_;
+  std::vector<std::size_t> first_piece_;  ///< Of each mixed cell.
   std::size_t evaluations_ = 0;
 };
 

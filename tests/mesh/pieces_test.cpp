@@ -31,6 +31,7 @@ PolygonizeOptions options(double tolerance, Border border) {
   return {.region = {{-3, -3, -1}, {3.3, 3.1, 1.5}},
           .resolution = 0.05,
           .tolerance = tolerance,
+          .crisp = border == Border::Closed,  // With and without vertices on creases.
           .border = border,
           .parts = Parts::Grounded};
 }

@@ -29,6 +29,7 @@ struct AmplifyRun {
   std::optional<double> tolerance;                ///< Metres off the surface where cells are not finest; 0: all are. Missing:
                                                   ///< a tenth of the resolution where less than half of the ground is steep, else 0.
   std::size_t triangles = 0;                      ///< About as many as are wanted; 0: as it comes.
+  bool crisp = false;                             ///< Vertices on creases.
   bool solid = false;                             ///< Walls and a floor.
   Seed seed = 1;
   int threads = 0;                                ///< 0: all cores.

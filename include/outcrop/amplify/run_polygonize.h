@@ -21,6 +21,7 @@ struct PolygonizeRun {
   std::optional<double> resolution;             ///< Metres; missing: the scene's, else the region's longest side / 128.
   double tolerance = 0.0;     ///< Metres off the surface where cells are not finest; 0: all are.
   std::size_t triangles = 0;  ///< About as many as are wanted; 0: as it comes.
+  bool crisp = false;         ///< Vertices on creases.
   std::optional<Box> region;                    ///< Missing: the scene's, else where the solid is.
   Border border = Border::Closed;
   Parts parts = Parts::All;

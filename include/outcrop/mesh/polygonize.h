@@ -40,7 +40,8 @@ struct PolygonizeOptions {
                              ///< 0: all are.
   int levels = 4;            ///< Cells are up to 2^levels times as long as the finest, 0 to 8; with a tolerance.
   std::size_t triangles = 0;  ///< About how many are wanted; 0: as many as it takes. Decides the tolerance, and the
-                              ///< resolution where all finest cells would not do.
+                              ///< resolution where all finest cells would not do, or all coarsest be too many.
+  bool crisp = false;  ///< Creases that run through finest cells get vertices there, and sides along them.
   Border border = Border::Open;
   Parts parts = Parts::All;
   bool keep_voids = false;
