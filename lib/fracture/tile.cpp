@@ -66,6 +66,33 @@ std::vector<Vec3> spread(const std::vector<Vec3>& points, std::size_t count) {
   return result;
 }
 
+// The discs as they cut: with the normals of the faces along them, and once more for each further normal, to which those
+// faces then refer.
+std::vector<Disc> discs_as_cut(std::vector<Disc> discs, std::vector<Cluster>& clusters) {
+  constexpr double kSameNormal = 1.0 - 1e-12;  // |cos|: some 1.4e-6 radians
+  std::vector<std::vector<int>> versions(discs.size());
+  for (Cluster& cluster : clusters)
+    for (Polytope::Face& face : cluster.shape.faces) {
+      if (face.joint < 0) continue;
+      const auto drawn = static_cast<std::size_t>(face.joint);
+      const Vec3& n = face.plane.normal;
+      const auto same = std::find_if(versions[drawn].begin(), versions[drawn].end(), [&](int v) {
+        return std::abs(glm::dot(discs[static_cast<std::size_t>(v)].normal, n)) > kSameNormal;
+      });
+      if (same != versions[drawn].end()) {
+        face.joint = *same;
+        continue;
+      }
+      const auto version = versions[drawn].empty() ? drawn : discs.size();
+      if (version == discs.size()) discs.push_back(discs[drawn]);
+      const double side = glm::dot(discs[drawn].normal, n) < 0.0 ? -1.0 : 1.0;
+      if (std::abs(glm::dot(discs[version].normal, n)) <= kSameNormal) discs[version].normal = side * n;
+      versions[drawn].push_back(static_cast<int>(version));
+      face.joint = static_cast<int>(version);
+    }
+  return discs;
+}
+
 // The cell with its walls moved back by half the crack, around the centre of its largest ball.
 Block block_of(const Cluster& cluster, const TileOptions& options) {
   const double back = 0.5 * options.aperture;
@@ -83,6 +110,7 @@ Block block_of(const Cluster& cluster, const TileOptions& options) {
     if (block.centre[axis] >= options.side) block.centre[axis] = 0.0;  // floor of a tiny negative number
   for (const Polytope::Face& face : shape.faces)
     block.planes.push_back({face.plane.normal, face.plane.distance(ball.centre)});
+  for (const Polytope::Face& face : shape.faces) block.plane_joint.push_back(face.joint);
   for (Vec3& v : shape.vertices) v -= ball.centre;
   block.bounds = shape.bounds();
   block.hull = convex_hull(shape.vertices).value();
@@ -126,11 +154,13 @@ Tile make_tile(const TileOptions& options, Seed seed, const Task& task) {
       .least_angle = pattern.least_angle,
       .longest = kLongest * options.side,
       .column_width = pattern.column_width * scale};
-  const Clusters clusters = split_samples(samples, graph, discs, cluster_options, seed, task);
+  Clusters clusters = split_samples(samples, graph, discs, cluster_options, seed, task);
 
   Tile tile;
   tile.side = options.side;
   tile.type = options.type;
+  tile.sets = pattern.sets;
+  tile.discs = discs_as_cut(discs, clusters.list);
   tile.blocks = parallel_map(
       clusters.list.size(), [&](std::size_t i) { return block_of(clusters.list[i], options); }, task);
   const std::vector<PlainHull> plain = parallel_map(

@@ -196,6 +196,29 @@ TEST(Tile, ComesNearToTableOneOfThePaper) {
   }
 }
 
+TEST(Tile, KnowsTheJointOfEveryPlane) {
+  for (const BlockType type : kBlockTypes)
+    for (const Seed seed : kSeeds) {
+      SCOPED_TRACE(std::string(name(type)) + ", seed " + std::to_string(seed));
+      const Tile& tile = paper_tile(type, seed);
+      ASSERT_GE(tile.discs.size(), tile.statistics.discs);
+      for (const Block& block : tile.blocks) {
+        ASSERT_EQ(block.plane_joint.size(), block.planes.size());
+        for (std::size_t i = 0; i < block.planes.size(); ++i) {
+          const int joint = block.plane_joint[i];
+          if (joint < 0) {
+            ASSERT_TRUE(joint == kAddedJoint || joint == kColumnJoint);
+            continue;
+          }
+          ASSERT_LT(joint, static_cast<int>(tile.discs.size()));
+          const Disc& disc = tile.discs[static_cast<std::size_t>(joint)];
+          ASSERT_GT(std::abs(glm::dot(disc.normal, block.planes[i].normal)), 1.0 - 1e-11);
+          ASSERT_LT(disc.set, static_cast<int>(tile.sets.size()));
+        }
+      }
+    }
+}
+
 TEST(Tile, HasTheShapesOfItsType) {
   for (const Seed seed : kSeeds) {
     SCOPED_TRACE(seed);

@@ -12,13 +12,9 @@
 
 namespace outcrop {
 
-/// What a face of a cluster lies along, where it is not a disc (discs are numbered from 0).
-inline constexpr int kAddedJoint = -2;   ///< A joint added because a piece wrapped around the torus or was too long.
-inline constexpr int kColumnJoint = -3;  ///< A joint between two columns.
-
 /// Samples that no joint parts, and the cell of the tiling that holds them.
 struct Cluster {
-  Polytope shape;                      ///< Face.joint: index of the disc, or one of the above.
+  Polytope shape;                      ///< Face.joint: index of the disc, or kAddedJoint, kColumnJoint, ….
   std::vector<std::uint32_t> samples;  ///< In the order of the input.
   std::vector<Vec3> positions;         ///< Of the samples, each moved by whole tiles into `shape`.
 };

@@ -1,6 +1,7 @@
 /// Joints: the fracture discs that split a tile, and the named types of rock that distribute them.
 #pragma once
 
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -18,6 +19,12 @@ inline constexpr BlockType kBlockTypes[] = {BlockType::Equidimensional, BlockTyp
 /// "equidimensional", "rhombohedral", …
 [[nodiscard]] std::string_view name(BlockType type) noexcept;
 
+/// What a face of a block lies along, where it is not a disc (discs are numbered from 0).
+inline constexpr int kWall = -1;         ///< The border of a box of rock: no joint.
+inline constexpr int kAddedJoint = -2;   ///< A joint added because a piece wrapped around the torus or was too long.
+inline constexpr int kColumnJoint = -3;  ///< A joint between two columns.
+inline constexpr int kTierJoint = -4;    ///< A joint between two tiers of columns.
+
 /// A fracture disc in tile space (a torus of the tile's side).
 struct Disc {
   Vec3 centre{0.0};
@@ -28,6 +35,7 @@ struct Disc {
 
 /// A family of discs about one mean orientation.
 struct JointSet {
+  std::string name{};      ///< For reports; one that refers to another set calls it by name.
   Vec3 normal{0, 0, 1};    ///< Mean normal in tile space, unit (z: bedding normal).
   double kappa = 300.0;    ///< Fisher concentration about the normal, > 0; angular deviation is about 81°/√κ.
   double share = 1.0;      ///< Relative number of discs.

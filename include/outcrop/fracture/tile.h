@@ -38,6 +38,7 @@ struct BlockMesh {
 struct Block {
   Vec3 centre{0.0};           ///< In [0, side)³. The block may reach across the faces: it is one block all the same.
   std::vector<Plane> planes;  ///< In a fixed order; each bounds a face.
+  std::vector<int> plane_joint;  ///< Of each plane: index into Tile::discs, or kAddedJoint, kColumnJoint, ….
   double rounding = 0.0;      ///< R for this block.
   double inradius = 0.0;      ///< Of the largest ball found around the centre.
   Box bounds;                 ///< Of the planes' polytope, unrounded.
@@ -68,6 +69,10 @@ struct Tile {
   double side = 20.0;
   BlockType type = BlockType::Equidimensional;
   std::vector<Block> blocks;
+  /// The discs as they cut, first as many as were drawn, in their order: one that was turned to close around the tile
+  /// has the turned normal; one that was turned in several ways stands once for each. `Disc::set` indexes `sets`.
+  std::vector<Disc> discs;
+  std::vector<JointSet> sets;  ///< The joint sets as asked for.
   TileStatistics statistics;
 };
 
