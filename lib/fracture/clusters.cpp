@@ -1,26 +1,63 @@
 #include "outcrop/fracture/clusters.h"
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
 #include <cmath>
 
+#include "joint_laws.h"
 #include "outcrop/core/error.h"
 #include "region.h"
+#include "sheets.h"
 
 namespace outcrop {
 namespace {
 
 constexpr double kTolerance = 1e-10;  // Of the side: vertices nearer to a plane than this are on it.
+constexpr double kPersistent = 0.5 * kPersistentRadius;  // Of the side: discs of larger radius are persistent.
+
+/// Which sets end at which.
+class Terminations {
+ public:
+  explicit Terminations(const std::vector<JointSet>& sets)
+      : count_(sets.size()), ages_(joint_ages(sets)), at_(count_ * (count_ + 1), false) {
+    for (std::size_t s = 0; s < count_; ++s)
+      for (const std::string& name : sets[s].ends_at)
+        for (std::size_t other = 0; other <= count_; ++other)
+          if (name == (other < count_ ? std::string_view(sets[other].name) : kColumns))
+            at_[s * (count_ + 1) + other] = true;
+  }
+
+  [[nodiscard]] bool at(std::size_t set, std::size_t other) const { return at_[set * (count_ + 1) + other]; }
+
+  /// Whether a set ends at what lies along a face.
+  [[nodiscard]] bool at(int set, int joint, const std::vector<Disc>& discs) const {
+    if (set < 0) return false;
+    if (joint == kColumnJoint || joint == kTierJoint) return at(static_cast<std::size_t>(set), count_);
+    if (joint < 0 || discs[static_cast<std::size_t>(joint)].set < 0) return false;
+    return at(static_cast<std::size_t>(set), static_cast<std::size_t>(discs[static_cast<std::size_t>(joint)].set));
+  }
+  [[nodiscard]] const std::vector<int>& ages() const noexcept { return ages_; }
+
+ private:
+  std::size_t count_;
+  std::vector<int> ages_;
+  std::vector<bool> at_;  ///< [set][other]; the last other are columns.
+};
 
 /// Parts one cell after the other by the discs that reach it.
 class CellSplitter {
  public:
-  CellSplitter(const std::vector<Vec3>& samples, const Graph& graph, const std::vector<Disc>& discs,
+  /// @param drawn  How many of the discs were drawn; after them come walls of regions, and the sheets that join them.
+  CellSplitter(const std::vector<Vec3>& samples, const Graph& graph, std::vector<Disc>& discs, std::size_t drawn,
                const ClusterOptions& options, Seed seed)
       : graph_(graph),
         discs_(discs),
+        drawn_(drawn),
         options_(options),
         seed_(seed),
+        ends_(options.sets),
+        sheets_(discs, options, seed),
         owner_(samples.size(), 0),
         position_(samples.size(), Vec3(0.0)),
         height_(samples.size(), 0.0) {}
@@ -42,7 +79,10 @@ class CellSplitter {
         continue;
       }
       const DiscImage image = node.images[node.next++];
-      if (auto parts = parted(node, image); !parts.empty()) {
+      if (image.disc < 0) {
+        add_sheets(node, static_cast<std::size_t>(kFirstSheets - image.disc));
+        stack.push_back(std::move(node));
+      } else if (auto parts = parted(node, image); !parts.empty()) {
         stack.push_back(std::move(parts[1]));
         stack.push_back(std::move(parts[0]));
       } else {
@@ -55,8 +95,9 @@ class CellSplitter {
   [[nodiscard]] std::size_t halvings() const noexcept { return halvings_; }
 
  private:
+  static constexpr int kFirstSheets = -1;
   struct DiscImage {
-    int disc;
+    int disc;  ///< −1 − set: here come the sheets of a persistent set.
     Vec3 centre;
   };
   struct Node {
@@ -65,6 +106,7 @@ class CellSplitter {
     std::vector<DiscImage> images;
     std::size_t next = 0;
     std::uint32_t id = 0;
+    std::vector<std::uint64_t> compartments;  ///< Of each set: which of the pieces that its joints alone would make.
   };
 
   Node root(Region region) {
@@ -85,24 +127,79 @@ class CellSplitter {
     node.shape = box_polytope(Box{middle, middle}.grown(16.0 * options_.side));
     for (const Region::Wall& wall : region.walls)
       node.shape = clipped(node.shape, wall.plane, wall.joint, kTolerance * options_.side);
-    for (const Polytope::Face& face : node.shape.faces) assert(face.joint != -1), (void)face;
+    for (const Polytope::Face& face : node.shape.faces)
+      assert(face.joint != kWall || options_.domain == Domain::Box), (void)face;
+    node.compartments.assign(options_.sets.size(), 0);
+    sheets_.enter(region, node.shape);
     add_images(node, region.spent);
     return node;
   }
 
-  // Every image of a disc whose sphere reaches the cell's bounds, in the order of the discs.
+  // What cuts a cell, in order of age: the sheets of persistent sets, then the discs.
   void add_images(Node& node, const std::vector<int>& spent) const {
+    int oldest = -1;
+    std::size_t i = 0;
+    const std::vector<int>& ages = ends_.ages();
+    const int youngest = ages.empty() ? 0 : *std::max_element(ages.begin(), ages.end());
+    for (int age = oldest; age <= youngest; ++age) {
+      for (std::size_t s = 0; s < ages.size(); ++s)
+        if (ages[s] == age && is_persistent(options_.sets[s]))
+          node.images.push_back({kFirstSheets - static_cast<int>(s), Vec3(0.0)});
+      for (; i < drawn_ && discs_[i].age <= age; ++i) add_images_of(node, static_cast<int>(i), spent);
+    }
+  }
+
+  // Every image of a disc whose sphere reaches the cell's bounds, unless it ends at a wall before.
+  void add_images_of(Node& node, int i, const std::vector<int>& spent) const {
+    if (std::find(spent.begin(), spent.end(), i) != spent.end()) return;
     const Box bounds = node.shape.bounds();
     const double side = options_.side;
-    for (int i = 0; i < static_cast<int>(discs_.size()); ++i) {
-      if (std::find(spent.begin(), spent.end(), i) != spent.end()) continue;
-      const Disc& disc = discs_[static_cast<std::size_t>(i)];
-      const Vec3 lo = glm::ceil((bounds.lo - disc.radius - disc.centre) / side);
-      const Vec3 hi = glm::floor((bounds.hi + disc.radius - disc.centre) / side);
-      for (double z = lo.z; z <= hi.z; ++z)
-        for (double y = lo.y; y <= hi.y; ++y)
-          for (double x = lo.x; x <= hi.x; ++x) node.images.push_back({i, disc.centre + side * Vec3(x, y, z)});
+    const Disc& disc = discs_[static_cast<std::size_t>(i)];
+    Vec3 lo = glm::ceil((bounds.lo - disc.radius - disc.centre) / side);
+    Vec3 hi = glm::floor((bounds.hi + disc.radius - disc.centre) / side);
+    if (options_.domain == Domain::Box) lo = hi = Vec3(0.0);
+    for (double z = lo.z; z <= hi.z; ++z)
+      for (double y = lo.y; y <= hi.y; ++y)
+        for (double x = lo.x; x <= hi.x; ++x) {
+          const Vec3 centre = disc.centre + side * Vec3(x, y, z);
+          const bool is_blocked =
+              disc.ends && std::any_of(node.shape.faces.begin(), node.shape.faces.end(), [&](const Polytope::Face& face) {
+                return ends_.at(disc.set, face.joint, discs_) && blocks(node.shape, face.plane, centre, node.shape);
+              });
+          if (!is_blocked) node.images.push_back({i, centre});
+        }
+  }
+
+  // Whether a joint across a convex piece of rock stands between a disc's centre and a part of the piece: the straight
+  // way from one to the other meets the joint's plane in the piece.
+  [[nodiscard]] bool blocks(const Polytope& piece, const Plane& plane, const Vec3& centre, const Polytope& part) const {
+    const double from = plane.distance(centre);
+    const Vec3 middle = part.middle();
+    const double to = plane.distance(middle);
+    if (from * to >= 0.0) return false;
+    const Vec3 way = centre + from / (from - to) * (middle - centre);
+    const double tolerance = kTolerance * options_.side;
+    return std::all_of(piece.faces.begin(), piece.faces.end(),
+                       [&](const Polytope::Face& face) { return face.plane.distance(way) <= tolerance; });
+  }
+
+  // The sheets of a persistent set that cross the cell come next: those that pass all others first.
+  void add_sheets(Node& node, std::size_t s) {
+    const JointSet& set = options_.sets[s];
+    const Box bounds = node.shape.bounds();
+    const double ending = set.ends_at.empty() ? 0.0 : set.ends_share;
+    std::vector<int> discs;
+    if (ending < 1.0) discs = sheets_.crossing(s, 0, 1.0 - ending, bounds);
+    if (ending > 0.0) {
+      std::uint64_t compartment = 1;
+      for (std::size_t other = 0; other < options_.sets.size(); ++other)
+        if (ends_.at(s, other)) compartment = Rng(compartment, "compartments", node.compartments[other]).next();
+      const std::vector<int> more = sheets_.crossing(s, compartment, ending, bounds);
+      discs.insert(discs.end(), more.begin(), more.end());
     }
+    std::vector<DiscImage> images;
+    for (const int i : discs) images.push_back({i, discs_[static_cast<std::size_t>(i)].centre});
+    node.images.insert(node.images.begin() + static_cast<std::ptrdiff_t>(node.next), images.begin(), images.end());
   }
 
   // Whether the disc may meet the cell: no face has it all outside.
@@ -120,7 +217,8 @@ class CellSplitter {
     const Disc& disc = discs_[static_cast<std::size_t>(image.disc)];
     const Plane plane{disc.normal, -glm::dot(disc.normal, image.centre)};
     const Interval range = node.shape.distances(plane);
-    if (range.lo >= 0.0 || range.hi <= 0.0 || !reaches(node.shape, disc, image.centre)) return {};
+    const double tolerance = kTolerance * options_.side;
+    if (range.lo >= -tolerance || range.hi <= tolerance || !reaches(node.shape, disc, image.centre)) return {};
     if (!enters(node, disc, image.centre, plane)) return {};
 
     std::size_t below = 0;
@@ -131,7 +229,7 @@ class CellSplitter {
     for (const Node& part : parts)
       if (part.shape.empty() || is_blade(part.shape) || inscribed_ball(part.shape).radius < options_.min_inradius)
         return stop();
-    share_out(node, parts);
+    share_out(node, parts, plane, image.disc);
     return parts;
   }
 
@@ -160,7 +258,7 @@ class CellSplitter {
     if (below == 0 || below == node.samples.size()) return {};  // a sliver
     ++halvings_;
     std::vector<Node> parts = sides(node, plane, kAddedJoint);
-    share_out(node, parts);
+    share_out(node, parts, plane, kAddedJoint);
     return parts;
   }
 
@@ -186,15 +284,30 @@ class CellSplitter {
     return false;
   }
 
-  // Samples and coming discs go to the side that they are on.
-  void share_out(const Node& node, std::vector<Node>& parts) {
-    for (Node& part : parts) {
+  // Samples and coming discs go to the side that they are on, discs to both unless they end at this joint.
+  void share_out(const Node& node, std::vector<Node>& parts, const Plane& plane, int joint) {
+    const int set = joint >= 0 ? discs_[static_cast<std::size_t>(joint)].set : -1;
+    for (std::size_t side = 0; side < parts.size(); ++side) {
+      Node& part = parts[side];
       part.id = ++last_id_;
+      part.compartments = node.compartments;
+      if (set >= 0) {
+        std::uint64_t& compartment = part.compartments[static_cast<std::size_t>(set)];
+        compartment = Rng(compartment ^ std::bit_cast<std::uint64_t>(plane.offset), "compartments", 2 * joint + side).next();
+      }
       const Box bounds = part.shape.bounds();
       for (std::size_t k = node.next; k < node.images.size(); ++k) {
         const DiscImage& later = node.images[k];
-        if (bounds.grown(discs_[static_cast<std::size_t>(later.disc)].radius).contains(later.centre))
-          part.images.push_back(later);
+        if (later.disc >= 0) {
+          const Disc& disc = discs_[static_cast<std::size_t>(later.disc)];
+          const bool is_near = disc.radius > options_.side * kPersistent
+                                   ? crosses({disc.normal, -glm::dot(disc.normal, later.centre)}, bounds)
+                                   : bounds.grown(disc.radius).contains(later.centre);
+          if (!is_near) continue;
+          if (disc.ends && ends_.at(disc.set, joint, discs_) && blocks(node.shape, plane, later.centre, part.shape))
+            continue;
+        }
+        part.images.push_back(later);
       }
     }
     for (const std::uint32_t i : node.samples) {
@@ -208,6 +321,7 @@ class CellSplitter {
   // Writes the samples' distances from the plane.
   bool enters(const Node& node, const Disc& disc, const Vec3& centre, const Plane& plane) {
     for (const std::uint32_t i : node.samples) height_[i] = plane.distance(position_[i]);
+    if (disc.radius > kPersistent * options_.side) return true;
     std::size_t through_plane = 0;
     std::size_t through_disc = 0;
     for (const std::uint32_t i : node.samples) {
@@ -242,9 +356,12 @@ class CellSplitter {
   }
 
   const Graph& graph_;
-  const std::vector<Disc>& discs_;
+  std::vector<Disc>& discs_;
+  std::size_t drawn_;
   const ClusterOptions& options_;
   Seed seed_;
+  Terminations ends_;
+  SheetSource sheets_;
   std::vector<std::uint32_t> owner_;  // Of each sample: the id of its node.
   std::vector<Vec3> position_;        // Of each sample in its cell.
   std::vector<double> height_;        // Of each sample over the plane in question.
@@ -259,10 +376,14 @@ Clusters split_samples(const std::vector<Vec3>& samples, const Graph& graph, con
                        const ClusterOptions& options, Seed seed, const Task& task) {
   require(graph.first.size() == samples.size() + 1, "graph", "one row a sample",
           static_cast<double>(graph.first.size()));
-  RegionSplitter regions(discs, options, seed);
-  CellSplitter cells(samples, graph, discs, options, seed);
+  require(options.columns.empty() || options.domain == Domain::Torus, "columns", "none in a box",
+          static_cast<double>(options.columns.size()));
   Clusters clusters;
-  for (Region& region : regions.run(samples)) {
+  clusters.discs = discs;
+  RegionSplitter regions(clusters.discs, options, seed);
+  std::vector<Region> parts = regions.run(samples);
+  CellSplitter cells(samples, graph, clusters.discs, discs.size(), options, seed);
+  for (Region& region : parts) {
     task.check();
     cells.split(std::move(region), clusters.list);
   }

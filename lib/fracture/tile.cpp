@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "joint_laws.h"
 #include "outcrop/core/error.h"
 #include "outcrop/core/parallel.h"
 #include "outcrop/fracture/clusters.h"
@@ -15,12 +16,14 @@
 namespace outcrop {
 namespace {
 
-constexpr double kPatternSide = 20.0;   // Metres: the tile for which patterns give their lengths.
 constexpr double kTolerance = 1e-10;    // Of the side: see clusters.cpp.
 constexpr double kLeastInradius = 0.4;  // Of the spacing: a thinner piece would be a blade between two samples.
 constexpr double kLongest = 0.95;       // Of the side: a block as long as the tile would show its period.
 constexpr std::size_t kAnchors = 24;
 constexpr std::size_t kOverlapProbes = 20'000;
+constexpr int kMostPasses = 4;           // Of drawing and splitting, until sets have the intensity that was asked for.
+constexpr double kNearIntensity = 0.02;  // Relative: near enough.
+constexpr double kMostChange = 2.0;      // Of a set's amount, from one pass to the next and in all.
 
 struct PlainHull {
   double volume = 0.0;
@@ -64,6 +67,61 @@ std::vector<Vec3> spread(const std::vector<Vec3>& points, std::size_t count) {
     room[best] = -1.0;
   }
   return result;
+}
+
+double area_of(const Polytope& shape, const Polytope::Face& face) {
+  Vec3 twice{0.0};
+  const Vec3& o = shape.vertices[face.loop[0]];
+  for (std::size_t i = 2; i < face.loop.size(); ++i)
+    twice += glm::cross(shape.vertices[face.loop[i - 1]] - o, shape.vertices[face.loop[i]] - o);
+  return 0.5 * glm::length(twice);
+}
+
+std::vector<SetIntensity> intensities_of(const Clusters& clusters, const std::vector<Disc>& drawn,
+                                         const std::vector<JointSet>& sets, double side) {
+  const double volume = side * side * side;
+  std::vector<SetIntensity> result(sets.size());
+  for (std::size_t s = 0; s < sets.size(); ++s)
+    if (is_measured(sets[s]))
+      result[s].asked = (is_persistent(sets[s]) || sets[s].spacing == 0.0 ? 1.0 : sets[s].persistence) / mean_gap(sets[s]);
+  for (const Disc& disc : drawn)
+    if (disc.set >= 0) result[static_cast<std::size_t>(disc.set)].drawn += kPi * disc.radius * disc.radius / volume;
+  for (const Cluster& cluster : clusters.list)
+    for (const Polytope::Face& face : cluster.shape.faces) {
+      const int set = face.joint >= 0 ? clusters.discs[static_cast<std::size_t>(face.joint)].set : -1;
+      // Each joint is the face of a block on either side.
+      if (set >= 0) result[static_cast<std::size_t>(set)].made += 0.5 * area_of(cluster.shape, face) / volume;
+    }
+  return result;
+}
+
+struct Split {
+  Clusters clusters;
+  std::vector<SetIntensity> intensities;
+};
+
+// A disc grows until it parts its block, and ends where it would leave a chip: so the joints have another area than the
+// discs. What sets with discs are short of or beyond is made up by drawing more or fewer.
+Split split_as_asked(const std::vector<Vec3>& samples, const Graph& graph, JointPattern pattern,
+                     const ClusterOptions& options, Seed seed, const Task& task) {
+  const std::vector<JointSet> asked = pattern.sets;
+  std::vector<double> change(asked.size(), 1.0);
+  for (int pass = 1;; ++pass) {
+    const std::vector<Disc> discs = draw_discs(pattern, options.side, seed, options.domain);
+    Split split;
+    split.clusters = split_samples(samples, graph, discs, options, seed, task);
+    split.intensities = intensities_of(split.clusters, discs, asked, options.side);
+    bool is_near = true;
+    for (std::size_t s = 0; s < asked.size(); ++s) {
+      const SetIntensity& got = split.intensities[s];
+      if (is_persistent(asked[s]) || got.asked == 0.0 || got.made == 0.0) continue;
+      is_near = is_near && std::abs(got.made / got.asked - 1.0) < kNearIntensity;
+      change[s] = std::clamp(change[s] * got.asked / got.made, 1.0 / kMostChange, kMostChange);
+      pattern.sets[s].p32 = change[s] * asked[s].p32;
+      pattern.sets[s].persistence = std::min(4.0, change[s] * asked[s].persistence);
+    }
+    if (is_near || pass == kMostPasses) return split;
+  }
 }
 
 // The discs as they cut: with the normals of the faces along them, and once more for each further normal, to which those
@@ -134,33 +192,35 @@ Tile make_tile(const TileOptions& options, Seed seed, const Task& task) {
   const auto start = std::chrono::steady_clock::now();
   const double spacing = options.spacing > 0.0 ? options.spacing : options.side / kSpacingsPerSide;
   check(options, spacing);
-  const bool is_own = !options.pattern.sets.empty() || options.pattern.column_width > 0.0;
-  const JointPattern pattern = is_own ? options.pattern : joint_pattern(options.type);
-  check_pattern(pattern);
+  const bool is_own =
+      !options.pattern.sets.empty() || !options.pattern.columns.empty() || !options.pattern.discs_at.empty();
+  const JointPattern pattern = is_own ? options.pattern : joint_pattern(options.type, options.side);
+  check_pattern(pattern, options.side);
 
   task.begin("fracture", 0);
   const std::vector<Vec3> samples = poisson_samples(options.side, spacing, seed, task);
   const double sight = options.neighbour_factor * spacing;
   const Graph graph = neighbour_graph(samples, options.side, sight);
   task.check();
-  const std::vector<Disc> discs = draw_discs(pattern, options.side, seed);
-  const double scale = options.side / kPatternSide;
+  const bool is_torus = options.domain == Domain::Torus;
   const ClusterOptions cluster_options{
       .side = options.side,
       .sight = sight,
       .min_samples = options.min_block_samples,
-      .min_inradius = std::max({kLeastInradius * spacing, options.aperture, 0.5 * pattern.least_thickness * scale}),
+      .min_inradius = std::max({kLeastInradius * spacing, options.aperture, 0.5 * pattern.least_thickness}),
       .covered_share = pattern.covered_share,
       .least_angle = pattern.least_angle,
-      .longest = kLongest * options.side,
-      .column_width = pattern.column_width * scale};
-  Clusters clusters = split_samples(samples, graph, discs, cluster_options, seed, task);
+      .longest = is_torus ? kLongest * options.side : 2.0 * options.side,
+      .columns = pattern.columns,
+      .sets = pattern.sets,
+      .domain = options.domain};
+  auto [clusters, intensities] = split_as_asked(samples, graph, pattern, cluster_options, seed, task);
 
   Tile tile;
   tile.side = options.side;
   tile.type = options.type;
   tile.sets = pattern.sets;
-  tile.discs = discs_as_cut(discs, clusters.list);
+  tile.discs = discs_as_cut(clusters.discs, clusters.list);
   tile.blocks = parallel_map(
       clusters.list.size(), [&](std::size_t i) { return block_of(clusters.list[i], options); }, task);
   const std::vector<PlainHull> plain = parallel_map(
@@ -175,7 +235,8 @@ Tile make_tile(const TileOptions& options, Seed seed, const Task& task) {
   const double cube = options.side * options.side * options.side;
   const auto blocks = static_cast<double>(tile.blocks.size());
   s.samples = samples.size();
-  s.discs = discs.size();
+  s.discs = clusters.discs.size();
+  s.intensities = std::move(intensities);
   s.clusters = clusters.list.size();
   s.merged_chips = clusters.stopped_joints;
   s.added_joints = clusters.added_joints;

@@ -20,7 +20,8 @@ ClusterOptions options_of(const JointPattern& pattern) {
           .covered_share = pattern.covered_share,
           .least_angle = pattern.least_angle,
           .longest = 19.0,
-          .column_width = pattern.column_width};
+          .columns = pattern.columns,
+          .sets = pattern.sets};
 }
 
 struct Case {
@@ -100,8 +101,8 @@ TEST(Clusters, TileTheTorusWhateverTheJoints) {
       {.sets = {set({0, 0, 1}, 1e8, 30)}, .discs = 12},
       {.sets = {set({0.3, 0.5, 0.8}, 1e8, 12)}, .discs = 20},
       {.sets = {set({0.9, 0.1, 0.2}, 500, 25), set({0.8, -0.3, 0.3}, 500, 4)}, .discs = 30},
-      {.sets = {set({1, 1, 1}, 400, 3)}, .discs = 200, .column_width = 1.5},
-      {.sets = {set({1, 0, 0}, 400, 3)}, .discs = 40, .column_width = 4.0},
+      {.sets = {set({1, 1, 1}, 400, 3)}, .discs = 200, .columns = {{.width = 1.5}}},
+      {.sets = {set({1, 0, 0}, 400, 3)}, .discs = 40, .columns = {{.width = 4.0}}},
       {.sets = {set({0, 0, 1}, 0.1, 60)}, .discs = 60}};
   for (std::size_t i = 0; i < patterns.size(); ++i)
     for (Seed seed = 1; seed <= 3; ++seed) {
@@ -119,7 +120,7 @@ TEST(Clusters, AreBoundedByJointsAlone) {
       for (const Polytope::Face& face : cluster.shape.faces) {
         ASSERT_TRUE(face.joint >= 0 || face.joint == kAddedJoint || face.joint == kColumnJoint) << name(type);
         if (face.joint < 0) continue;
-        const Disc& disc = c.discs[static_cast<std::size_t>(face.joint)];
+        const Disc& disc = c.clusters.discs[static_cast<std::size_t>(face.joint)];
         const double turn = std::acos(std::min(1.0, std::abs(glm::dot(disc.normal, face.plane.normal))));
         ASSERT_LE(turn, c.clusters.largest_bend + 1e-6) << name(type);
         // The face's plane passes through an image of the disc's centre.

@@ -79,9 +79,8 @@ TEST(DrawDiscs, SpreadTheCentresOfASetWhereThereIsRoom) {
 }
 
 TEST(DrawDiscs, ScaleWithTheTile) {
-  const JointPattern pattern = joint_pattern(BlockType::Equidimensional);
-  const auto small = draw_discs(pattern, 5.0, 3);
-  const auto large = draw_discs(pattern, 40.0, 3);
+  const auto small = draw_discs(joint_pattern(BlockType::Equidimensional, 5.0), 5.0, 3);
+  const auto large = draw_discs(joint_pattern(BlockType::Equidimensional, 40.0), 40.0, 3);
   ASSERT_EQ(small.size(), large.size());
   for (std::size_t i = 0; i < small.size(); ++i) {
     EXPECT_NEAR(8.0 * small[i].radius, large[i].radius, 1e-9);
@@ -91,7 +90,11 @@ TEST(DrawDiscs, ScaleWithTheTile) {
 
 TEST(DrawDiscs, HaveTruncatedPowerLawRadii) {
   // Median of r^−(a+1) on [lo, hi]: lo (1 − (1 − (lo/hi)^a) / 2)^(−1/a).
-  const JointPattern pattern{.sets = {{.kappa = 50.0, .radius_lo = 0.5, .radius_hi = 8.0, .radius_exponent = 1.6}},
+  const JointPattern pattern{.sets = {{.kappa = 50.0,
+                                         .radius_law = RadiusLaw::PowerLaw,
+                                         .radius_lo = 0.5,
+                                         .radius_hi = 8.0,
+                                         .radius_exponent = 1.6}},
                              .discs = 4000,
                              .centre_spacing = 0.0};
   const auto discs = draw_discs(pattern, kSide, 1);

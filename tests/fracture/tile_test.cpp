@@ -259,7 +259,7 @@ TEST(Tile, HasColumnsWithTheIntensityOfVoronoiPrisms) {
   // Lateral P32 is the length of Voronoi edges an area: 1.861 d⁻¹ √(√3/2)… between hexagons, 2/d, and Poisson seeds,
   // 2√q.
   const Tile& tile = paper_tile(BlockType::Columnar, 1);
-  const double width = joint_pattern(BlockType::Columnar).column_width;
+  const double width = joint_pattern(BlockType::Columnar).columns[0].width;
   double area = 0.0;
   for (const Block& block : tile.blocks)
     for (const auto& t : block.hull.triangles) {

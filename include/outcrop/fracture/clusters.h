@@ -22,16 +22,19 @@ struct Cluster {
 struct ClusterOptions {
   double side = 20.0;
   double sight = 1.2;          ///< Metres: two samples within it see each other; the graph's radius.
-  int min_samples = 12;        ///< A joint ends rather than part fewer samples from a cluster.
+  int min_samples = 12;        ///< A joint ends rather than part fewer samples from a cluster; 0: no matter.
   double min_inradius = 0.2;   ///< Metres: nor does it part off a piece without room for a ball of this radius.
   double covered_share = 0.0;  ///< See JointPattern.
   double least_angle = 0.0;    ///< See JointPattern.
   double longest = 19.0;       ///< Metres along x, y or z; joints are added to halve longer cells.
-  double column_width = 0.0;   ///< Metres; > 0: columns along z first.
+  std::vector<ColumnTier> columns{};  ///< See JointPattern; on the torus only.
+  std::vector<JointSet> sets{};       ///< What Disc::set refers to: where joints end, and which persistent ones there are.
+  Domain domain = Domain::Torus;      ///< In a box no joint is turned or added, and its walls are faces (kWall).
 };
 
 struct Clusters {
   std::vector<Cluster> list;
+  std::vector<Disc> discs;  ///< Those given, with their normals as given, then the persistent joints that were made.
   std::size_t stopped_joints = 0;  ///< Joints that ended because they would have cut off a chip.
   std::size_t added_joints =
       0;  ///< Joints that no disc stands for; they keep pieces from wrapping, or from being too long.
@@ -47,7 +50,12 @@ struct Clusters {
 /// a small whole vector: the first joint is turned to the nearest one, the second is turned about one axis only, all
 /// others keep their planes. See docs/decisions/fracture.md. The cells do not depend on the order of the samples.
 ///
-/// @param discs  Largest first, as draw_discs returns them.
+/// Persistent sets cut everything up to what they end at: within each compartment that those joints bound, joints stand
+/// at distances by the set's law, and another compartment has joints of its own.
+///
+/// @param samples  None in a tile that geometry alone may split: then persistent joints do, discs do not.
+/// @param discs  Older ones first, then larger ones, as draw_discs returns them.
+/// @throws ParameterError for columns in a box, a graph of another size, or sets that end at unknown ones.
 /// Cost: O(samples · discs that reach their cluster), plus O(discs · cells that do not yet wrap).
 [[nodiscard]] Clusters split_samples(const std::vector<Vec3>& samples, const Graph& graph,
                                      const std::vector<Disc>& discs, const ClusterOptions& options, Seed seed,

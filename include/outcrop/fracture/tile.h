@@ -19,13 +19,14 @@ inline constexpr double kSpacingsPerSide = 27.04;
 
 struct TileOptions {
   BlockType type = BlockType::Equidimensional;
-  JointPattern pattern{};         ///< Empty sets and no columns: joint_pattern(type).
+  JointPattern pattern{};         ///< Neither sets, columns nor discs by hand: joint_pattern(type, side).
   double side = 20.0;             ///< Metres, > 0.
   double spacing = 0.0;           ///< Sample spacing, metres; 0: side / kSpacingsPerSide.
   double neighbour_factor = 1.6;  ///< Graph radius over spacing, [1, 4].
   double aperture = 0.04;         ///< Width of a crack, metres, ≥ 0 and below the spacing.
   double rounding = 0.25;         ///< R of the smooth intersection; limited by half of a block's inradius.
   int min_block_samples = 12;     ///< A joint stops rather than cut off a chip of fewer samples; 1: chips stay.
+  Domain domain = Domain::Torus;  ///< A box is for measuring: its blocks end at walls (kWall) and do not tile.
 };
 
 /// A triangle mesh of one convex block, relative to the block's centre; counter-clockwise from outside.
@@ -48,9 +49,17 @@ struct Block {
   std::uint32_t sample_count = 0;
 };
 
+/// The joints of one set, as area in a volume (P32), 1/m.
+struct SetIntensity {
+  double asked = 0.0;  ///< 0: the set went by share.
+  double drawn = 0.0;  ///< Of its discs, Σ π r² / side³; 0 for persistent sets.
+  double made = 0.0;   ///< Of the faces between blocks along its joints.
+};
+
 /// What happened on the way, for reports; compare with Table 1 of the paper.
 struct TileStatistics {
   std::size_t samples = 0, discs = 0, clusters = 0;
+  std::vector<SetIntensity> intensities;  ///< Of each joint set.
   std::size_t merged_chips = 0;  ///< Chips that stay with their block, because the joint ends instead of parting them.
   std::size_t added_joints = 0;  ///< Joints that no disc stands for; without them pieces would wrap around the tile.
   double largest_bend = 0.0;     ///< Largest turn of a disc's normal that made it close around the tile, radians.

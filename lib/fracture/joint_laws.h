@@ -1,0 +1,39 @@
+/// What joint sets are drawn by: orientations, spacings and radii; private to the stage.
+#pragma once
+
+#include <vector>
+
+#include "outcrop/fracture/joints.h"
+
+namespace outcrop {
+
+/// Radius of persistent joints, in sides: beyond whatever a cell of the tile reaches to.
+inline constexpr double kPersistentRadius = 1000.0;
+
+/// The normal of one of the set's joints.
+[[nodiscard]] Vec3 draw_normal(const JointSet& set, Rng& rng);
+
+/// The radius of one of its discs.
+[[nodiscard]] double draw_radius(const JointSet& set, Rng& rng);
+
+/// The distance from one joint of the set to the next.
+[[nodiscard]] double draw_gap(const JointSet& set, Rng& rng);
+
+/// The mean distance between the set's joints, were all of them persistent: its spacing, or 1 / P32.
+[[nodiscard]] double mean_gap(const JointSet& set) noexcept;
+
+/// Positions in [0, period): gaps follow the law and add up to the period, in which as many joints stand as come nearest
+/// to the mean, one at least. @param from_zero  The first stands at 0; else anywhere.
+[[nodiscard]] std::vector<double> closed_positions(const JointSet& set, double period, bool from_zero, Rng& rng);
+
+/// Positions in [−reach, reach) of a stationary sequence that goes on beyond: its phase is uniform.
+[[nodiscard]] std::vector<double> open_positions(const JointSet& set, double reach, Rng& rng);
+
+[[nodiscard]] inline bool is_persistent(const JointSet& set) noexcept {
+  return set.radius_law == RadiusLaw::Persistent;
+}
+
+/// Whether the number of its joints follows from spacing or P32, not from a share.
+[[nodiscard]] inline bool is_measured(const JointSet& set) noexcept { return set.spacing > 0.0 || set.p32 > 0.0; }
+
+}  // namespace outcrop
