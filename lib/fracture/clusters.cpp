@@ -227,7 +227,7 @@ class CellSplitter {
     if (below < fewest || node.samples.size() - below < fewest) return stop();
     std::vector<Node> parts = sides(node, plane, image.disc);
     for (const Node& part : parts)
-      if (part.shape.empty() || is_blade(part.shape) || inscribed_ball(part.shape).radius < options_.min_inradius)
+      if (part.shape.empty() || is_blade(part.shape) || is_thin(part.shape))
         return stop();
     share_out(node, parts, plane, image.disc);
     return parts;
@@ -269,6 +269,10 @@ class CellSplitter {
     parts[0].shape = clipped(node.shape, plane, joint, tolerance);
     parts[1].shape = clipped(node.shape, {-plane.normal, -plane.offset}, joint, tolerance);
     return parts;
+  }
+
+  [[nodiscard]] bool is_thin(const Polytope& shape) const {
+    return options_.min_inradius > 0.0 && inscribed_ball(shape).radius < options_.min_inradius;
   }
 
   // Whether the newest face meets another at less than the least angle.

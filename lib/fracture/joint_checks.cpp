@@ -70,15 +70,14 @@ void check_pattern(const JointPattern& pattern, double side) {
           pattern.least_angle);
   check_columns(pattern, side);
   double shares = 0.0;
-  bool all_measured = true;
+  bool by_share = pattern.sets.empty() && pattern.columns.empty() && pattern.discs_at.empty();
   for (const JointSet& set : pattern.sets) {
     check_set(set, side);
     if (is_measured(set)) continue;
-    all_measured = false;
+    by_share = true;
     shares += set.share;
   }
-  const bool by_share = pattern.discs > 0 && !(all_measured && !pattern.sets.empty());
-  require(!by_share || shares > 0.0, "share", "a sum > 0 over the joint sets", shares);
+  require(pattern.discs == 0 || !by_share || shares > 0.0, "share", "a sum > 0 over the joint sets", shares);
   for (const Disc& disc : pattern.discs_at) {
     require(std::abs(glm::length(disc.normal) - 1.0) < 1e-6, "normal", "a unit vector", glm::length(disc.normal));
     require(disc.radius > 0.0 && disc.radius <= kWidestDisc * side, "radius", "in (0, 10 sides]", disc.radius);

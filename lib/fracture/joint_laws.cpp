@@ -54,8 +54,9 @@ double draw_gap(const JointSet& set, Rng& rng) {
   return -mean * std::log(1.0 - rng.uniform());  // by P32: planes at random
 }
 
-std::vector<double> closed_positions(const JointSet& set, double period, bool from_zero, Rng& rng) {
-  const auto count = static_cast<std::size_t>(std::max(1.0, std::round(period / mean_gap(set))));
+std::vector<double> closed_positions(const JointSet& set, double period, Periods periods, bool from_zero, Rng& rng) {
+  const double rounding = periods == Periods::One ? 0.5 : rng.uniform();
+  const auto count = static_cast<std::size_t>(std::max(1.0, std::floor(period / mean_gap(set) + rounding)));
   std::vector<double> gaps(count);
   double sum = 0.0;
   for (double& gap : gaps) sum += gap = draw_gap(set, rng);

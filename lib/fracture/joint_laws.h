@@ -22,9 +22,14 @@ inline constexpr double kPersistentRadius = 1000.0;
 /// The mean distance between the set's joints, were all of them persistent: its spacing, or 1 / P32.
 [[nodiscard]] double mean_gap(const JointSet& set) noexcept;
 
-/// Positions in [0, period): gaps follow the law and add up to the period, in which as many joints stand as come nearest
-/// to the mean, one at least. @param from_zero  The first stands at 0; else anywhere.
-[[nodiscard]] std::vector<double> closed_positions(const JointSet& set, double period, bool from_zero, Rng& rng);
+/// How many joints, on average mean_gap apart, are in one of many periods: the number is rounded at random, right on
+/// average; in a period that stands alone: to the nearest. One at least.
+enum class Periods { One, Many };
+
+/// Positions in [0, period): gaps follow the law and add up to the period. @param from_zero  The first stands at 0; else
+/// anywhere.
+[[nodiscard]] std::vector<double> closed_positions(const JointSet& set, double period, Periods periods, bool from_zero,
+                                                   Rng& rng);
 
 /// Positions in [−reach, reach) of a stationary sequence that goes on beyond: its phase is uniform.
 [[nodiscard]] std::vector<double> open_positions(const JointSet& set, double reach, Rng& rng);

@@ -5,6 +5,7 @@
 
 #include "joint_laws.h"
 #include "lattice.h"
+#include "outcrop/core/box.h"
 #include "outcrop/fracture/samples.h"
 #include "wrapped_grid.h"
 
@@ -33,6 +34,7 @@ struct CentreCube {
     }
     return p;
   }
+  [[nodiscard]] bool contains(const Vec3& p) const { return Box{Vec3(lo), Vec3(lo + side)}.contains(p); }
   [[nodiscard]] Vec3 middle() const { return Vec3(lo + 0.5 * side); }
   [[nodiscard]] double volume() const { return side * side * side; }
 };
@@ -178,7 +180,7 @@ std::vector<Disc> discs_on_sheets(const JointSet& set, std::size_t s, double sid
     const IVec3 m = nearest_whole_vector(set.normal);
     axis = unit(m);
     const double pitch = side / std::sqrt(dot(m, m));
-    sheets = closed_positions(set, pitch, false, sheet_rng);
+    sheets = closed_positions(set, pitch, Periods::One, false, sheet_rng);
     area = cube.volume() / pitch;
   } else {
     reach = 0.5 * std::sqrt(3.0) * cube.side;
@@ -216,7 +218,7 @@ std::vector<Disc> discs_on_sheets(const JointSet& set, std::size_t s, double sid
     } else {
       do disc.centre = candidate(rng);
       while (glm::distance(disc.centre, cube.middle() + height * axis) > reach);
-      if (cube.wrapped(disc.centre) != disc.centre) continue;  // beyond the cube
+      if (!cube.contains(disc.centre)) continue;
     }
     drawn.insert(disc);
     disc.normal = draw_normal(set, rng);

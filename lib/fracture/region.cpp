@@ -331,7 +331,8 @@ std::vector<Region> RegionSplitter::bedded(Region slab) {
       others_end_at(static_cast<std::size_t>(set))) {
     slab.layered_sets.push_back(set);
     Rng rng(seed_, "layers");
-    for (const double t : closed_positions(options_.sets[static_cast<std::size_t>(set)], pitch, true, rng)) {
+    for (const double t : closed_positions(options_.sets[static_cast<std::size_t>(set)], pitch,
+                                           Periods::One, true, rng)) {
       if (t == 0.0) continue;
       Disc bed = discs_[static_cast<std::size_t>(wall)];
       bed.centre = (floor + t) * up;

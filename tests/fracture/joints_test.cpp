@@ -88,20 +88,6 @@ TEST(DrawDiscs, ScaleWithTheTile) {
   }
 }
 
-TEST(DrawDiscs, HaveTruncatedPowerLawRadii) {
-  // Median of r^−(a+1) on [lo, hi]: lo (1 − (1 − (lo/hi)^a) / 2)^(−1/a).
-  const JointPattern pattern{.sets = {{.kappa = 50.0,
-                                         .radius_law = RadiusLaw::PowerLaw,
-                                         .radius_lo = 0.5,
-                                         .radius_hi = 8.0,
-                                         .radius_exponent = 1.6}},
-                             .discs = 4000,
-                             .centre_spacing = 0.0};
-  const auto discs = draw_discs(pattern, kSide, 1);
-  const double median = 0.5 * std::pow(1.0 - 0.5 * (1.0 - std::pow(0.5 / 8.0, 1.6)), -1.0 / 1.6);
-  EXPECT_NEAR(discs[2000].radius, median, 0.03 * median);
-}
-
 TEST(DrawDiscs, MeetScanLinesAsTheirIntensitySays) {
   // P10 along t is P32 E|n · t|: 1/2 for uniform normals. Lines along an axis of the torus close, so there is no
   // border.

@@ -23,7 +23,7 @@ struct ClusterOptions {
   double side = 20.0;
   double sight = 1.2;          ///< Metres: two samples within it see each other; the graph's radius.
   int min_samples = 12;        ///< A joint ends rather than part fewer samples from a cluster; 0: no matter.
-  double min_inradius = 0.2;   ///< Metres: nor does it part off a piece without room for a ball of this radius.
+  double min_inradius = 0.2;   ///< Metres: nor does it part off a piece without room for a ball of this radius; 0: may be.
   double covered_share = 0.0;  ///< See JointPattern.
   double least_angle = 0.0;    ///< See JointPattern.
   double longest = 19.0;       ///< Metres along x, y or z; joints are added to halve longer cells.
