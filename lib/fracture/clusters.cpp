@@ -99,6 +99,7 @@ class CellSplitter {
   struct DiscImage {
     int disc;  ///< −1 − set: here come the sheets of a persistent set.
     Vec3 centre;
+    bool again = false;  ///< It ended in a larger cell before.
   };
   struct Node {
     Polytope shape;
@@ -212,8 +213,31 @@ class CellSplitter {
     return true;
   }
 
-  // The two sides of a joint, or nothing where it does not enter the cell or ends in it.
+  // The two sides of a joint, or nothing where it does not enter the cell or ends in it. A persistent joint that would
+  // cut a chip or a blade off a large cell is tried again in the cells that joints of its age leave: it ends there only.
   std::vector<Node> parted(Node& node, const DiscImage& image) {
+    Sides part = sides_of(node, image);
+    if (!part.is_stopped) return std::move(part.parts);
+    const Disc& disc = discs_[static_cast<std::size_t>(image.disc)];
+    if (image.again || disc.radius <= kPersistent * options_.side) {
+      ++stopped_;
+      return {};
+    }
+    const auto younger = std::find_if(
+        node.images.begin() + static_cast<std::ptrdiff_t>(node.next), node.images.end(), [&](const DiscImage& later) {
+          const int age = later.disc >= 0 ? discs_[static_cast<std::size_t>(later.disc)].age
+                                          : ends_.ages()[static_cast<std::size_t>(kFirstSheets - later.disc)];
+          return age > disc.age;
+        });
+    node.images.insert(younger, {image.disc, image.centre, true});
+    return {};
+  }
+
+  struct Sides {
+    std::vector<Node> parts;  ///< None where the joint does not enter.
+    bool is_stopped = false;  ///< It would, but for what it would leave.
+  };
+  Sides sides_of(const Node& node, const DiscImage& image) {
     const Disc& disc = discs_[static_cast<std::size_t>(image.disc)];
     const Plane plane{disc.normal, -glm::dot(disc.normal, image.centre)};
     const Interval range = node.shape.distances(plane);
@@ -224,13 +248,12 @@ class CellSplitter {
     std::size_t below = 0;
     for (const std::uint32_t i : node.samples) below += height_[i] < 0.0;
     const auto fewest = static_cast<std::size_t>(options_.min_samples);
-    if (below < fewest || node.samples.size() - below < fewest) return stop();
+    if (below < fewest || node.samples.size() - below < fewest) return {.is_stopped = true};
     std::vector<Node> parts = sides(node, plane, image.disc);
     for (const Node& part : parts)
-      if (part.shape.empty() || is_blade(part.shape) || is_thin(part.shape))
-        return stop();
+      if (part.shape.empty() || is_blade(part.shape) || is_thin(part.shape)) return {.is_stopped = true};
     share_out(node, parts, plane, image.disc);
-    return parts;
+    return {std::move(parts)};
   }
 
   // A joint across the middle of a cell that is too long, as slender blocks break; nothing for the others.
@@ -344,11 +367,6 @@ class CellSplitter {
     }
     return through_disc > 0 &&
            static_cast<double>(through_disc) >= options_.covered_share * static_cast<double>(through_plane);
-  }
-
-  std::vector<Node> stop() {
-    ++stopped_;
-    return {};
   }
 
   Cluster finished(Node node) const {

@@ -47,19 +47,29 @@ double draw_radius(const JointSet& set, Rng& rng) {
 
 double mean_gap(const JointSet& set) noexcept { return set.spacing > 0.0 ? set.spacing : 1.0 / set.p32; }
 
-double draw_gap(const JointSet& set, Rng& rng) {
-  const double mean = mean_gap(set);
+namespace {
+
+double gap_by_law(const JointSet& set, double mean, Rng& rng) {
   if (set.spacing > 0.0 && set.spacing_law == SpacingLaw::Fixed) return mean;
   if (set.spacing > 0.0 && set.spacing_law == SpacingLaw::Lognormal) return lognormal(mean, set.spacing_cv, rng);
   return -mean * std::log(1.0 - rng.uniform());  // by P32: planes at random
 }
 
-std::vector<double> closed_positions(const JointSet& set, double period, Periods periods, bool from_zero, Rng& rng) {
-  const double rounding = periods == Periods::One ? 0.5 : rng.uniform();
+double draw_gap(const JointSet& set, const GapRule& rule, Rng& rng) {
+  const double mean = mean_gap(set);
+  const double least = std::min(rule.least, mean);
+  return mean > least ? least + gap_by_law(set, mean - least, rng) : mean;
+}
+
+}  // namespace
+
+std::vector<double> closed_positions(const JointSet& set, double period, const GapRule& rule, bool from_zero,
+                                     Rng& rng) {
+  const double rounding = rule.periods == GapRule::Periods::One ? 0.5 : rng.uniform();
   const auto count = static_cast<std::size_t>(std::max(1.0, std::floor(period / mean_gap(set) + rounding)));
   std::vector<double> gaps(count);
   double sum = 0.0;
-  for (double& gap : gaps) sum += gap = draw_gap(set, rng);
+  for (double& gap : gaps) sum += gap = draw_gap(set, rule, rng);
   std::vector<double> positions(count);
   double at = from_zero ? 0.0 : period * rng.uniform();
   for (std::size_t i = 0; i < count; ++i) {
@@ -70,12 +80,12 @@ std::vector<double> closed_positions(const JointSet& set, double period, Periods
   return positions;
 }
 
-std::vector<double> open_positions(const JointSet& set, double reach, Rng& rng) {
+std::vector<double> open_positions(const JointSet& set, double reach, const GapRule& rule, Rng& rng) {
   double at = -reach - mean_gap(set) * (kRunIn + rng.uniform());
   std::vector<double> positions;
   while (at < reach) {
     if (at >= -reach) positions.push_back(at);
-    at += draw_gap(set, rng);
+    at += draw_gap(set, rule, rng);
   }
   return positions;
 }

@@ -169,7 +169,9 @@ std::vector<Disc> discs_by_intensity(const JointPattern& pattern, std::size_t s,
 }
 
 // Sheets along the mean normal, each with discs in the proportion of its area that the persistence asks for.
-std::vector<Disc> discs_on_sheets(const JointSet& set, std::size_t s, double side, Seed seed, Domain domain) {
+std::vector<Disc> discs_on_sheets(const JointPattern& pattern, std::size_t s, double side, Seed seed, Domain domain) {
+  const JointSet& set = pattern.sets[s];
+  const GapRule rule{.least = pattern.least_thickness};
   const CentreCube cube = centre_cube(set, side, domain);
   Rng sheet_rng(seed, "sheets", s);
   Vec3 axis = set.normal;
@@ -180,11 +182,11 @@ std::vector<Disc> discs_on_sheets(const JointSet& set, std::size_t s, double sid
     const IVec3 m = nearest_whole_vector(set.normal);
     axis = unit(m);
     const double pitch = side / std::sqrt(dot(m, m));
-    sheets = closed_positions(set, pitch, Periods::One, false, sheet_rng);
+    sheets = closed_positions(set, pitch, rule, false, sheet_rng);
     area = cube.volume() / pitch;
   } else {
     reach = 0.5 * std::sqrt(3.0) * cube.side;
-    sheets = open_positions(set, reach, sheet_rng);
+    sheets = open_positions(set, reach, rule, sheet_rng);
     area = kPi * reach * reach;
   }
   if (sheets.empty()) return {};
@@ -235,7 +237,7 @@ std::vector<Disc> draw_discs(const JointPattern& pattern, double side, Seed seed
   for (std::size_t s = 0; s < pattern.sets.size(); ++s) {
     const JointSet& set = pattern.sets[s];
     if (!is_measured(set) || is_persistent(set)) continue;
-    const std::vector<Disc> more = set.spacing > 0.0 ? discs_on_sheets(set, s, side, seed, domain)
+    const std::vector<Disc> more = set.spacing > 0.0 ? discs_on_sheets(pattern, s, side, seed, domain)
                                                      : discs_by_intensity(pattern, s, side, seed, domain);
     discs.insert(discs.end(), more.begin(), more.end());
   }

@@ -332,7 +332,7 @@ std::vector<Region> RegionSplitter::bedded(Region slab) {
     slab.layered_sets.push_back(set);
     Rng rng(seed_, "layers");
     for (const double t : closed_positions(options_.sets[static_cast<std::size_t>(set)], pitch,
-                                           Periods::One, true, rng)) {
+                                           {.least = 2.0 * options_.min_inradius}, true, rng)) {
       if (t == 0.0) continue;
       Disc bed = discs_[static_cast<std::size_t>(wall)];
       bed.centre = (floor + t) * up;

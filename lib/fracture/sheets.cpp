@@ -67,9 +67,10 @@ std::vector<SheetSource::Sheet> SheetSource::sheets(std::size_t s, std::uint64_t
   const JointSet& set = options_.sets[s];
   const auto walls = closing_walls(walls_, discs_, static_cast<int>(s));
   Rng rng(seed_ ^ compartment, "sheets", std::uint64_t{s} << 32 | region_);
-  const Periods periods = options_.columns.empty() ? Periods::One : Periods::Many;
+  const GapRule rule{.least = 2.0 * options_.min_inradius,
+                     .periods = options_.columns.empty() ? GapRule::Periods::One : GapRule::Periods::Many};
   const std::vector<double> positions =
-      walls ? closed_positions(set, walls->pitch, periods, true, rng) : open_positions(set, reach_, rng);
+      walls ? closed_positions(set, walls->pitch, rule, true, rng) : open_positions(set, reach_, rule, rng);
   std::vector<Sheet> result;
   for (const double t : positions) {
     const Vec3 normal = draw_normal(set, rng);

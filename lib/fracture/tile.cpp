@@ -23,7 +23,8 @@ constexpr std::size_t kAnchors = 24;
 constexpr std::size_t kOverlapProbes = 20'000;
 constexpr int kMostPasses = 4;           // Of drawing and splitting, until sets have the intensity that was asked for.
 constexpr double kNearIntensity = 0.02;  // Relative: near enough.
-constexpr double kMostChange = 2.0;      // Of a set's amount, from one pass to the next and in all.
+constexpr double kLeastChange = 0.1;     // Of a set's amount, to make up for growth …
+constexpr double kMostChange = 4.0;      // … and for joints that end.
 
 struct PlainHull {
   double volume = 0.0;
@@ -116,7 +117,7 @@ Split split_as_asked(const std::vector<Vec3>& samples, const Graph& graph, Joint
       const SetIntensity& got = split.intensities[s];
       if (is_persistent(asked[s]) || got.asked == 0.0 || got.made == 0.0) continue;
       is_near = is_near && std::abs(got.made / got.asked - 1.0) < kNearIntensity;
-      change[s] = std::clamp(change[s] * got.asked / got.made, 1.0 / kMostChange, kMostChange);
+      change[s] = std::clamp(change[s] * got.asked / got.made, kLeastChange, kMostChange);
       pattern.sets[s].p32 = change[s] * asked[s].p32;
       pattern.sets[s].persistence = std::min(4.0, change[s] * asked[s].persistence);
     }
