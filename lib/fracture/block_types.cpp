@@ -3,25 +3,14 @@
 
 #include "outcrop/core/error.h"
 #include "outcrop/fracture/joints.h"
+#include "outcrop/fracture/orientations.h"
 
 namespace outcrop {
 namespace {
 
-// Rhombohedral: the normals of three sets at 65° to each other about the cube's diagonal. Their angle θ to it follows
-// from cos 65° = 1 − 3/2 sin²θ. At 60° they would be the diagonals (0 1 1), (1 0 1), (1 1 0).
-std::vector<JointSet> rhombohedral_sets(JointSet set) {
-  const double sine = std::sqrt((1.0 - std::cos(radians(65.0))) / 1.5);
-  const double cosine = std::sqrt(1.0 - sine * sine);
-  const Vec3 axis = Vec3(1.0) / std::sqrt(3.0);
-  std::vector<JointSet> sets;
-  for (int i = 0; i < 3; ++i) {
-    Vec3 away = axis;
-    away[i] -= std::sqrt(3.0);  // from the i-th axis towards the face diagonal opposite to it
-    set.name = "oblique " + std::to_string(i + 1);
-    set.normal = cosine * axis + sine * glm::normalize(away);
-    sets.push_back(set);
-  }
-  return sets;
+// By dip and dip direction in degrees, as files give them.
+Vec3 normal_at(double dip_deg, double dip_direction_deg) {
+  return normal_of({radians(dip_deg), radians(dip_direction_deg)});
 }
 
 JointSet joint_set(const char* name, const Vec3& normal, double kappa, double share, double radius_lo,
@@ -39,9 +28,9 @@ JointSet joint_set(const char* name, const Vec3& normal, double kappa, double sh
 // discs of 5 m there would be 60 blocks, not 125. Concentrations and stress shadows are ours: see
 // docs/decisions/fracture.md.
 JointPattern pattern_at_20_m(BlockType type) {
-  const Vec3 x(1, 0, 0);
-  const Vec3 y(0, 1, 0);
-  const Vec3 z(0, 0, 1);
+  const Vec3 x = normal_at(90, 90);
+  const Vec3 y = normal_at(90, 0);
+  const Vec3 z = normal_at(0, 0);
   switch (type) {
     case BlockType::Equidimensional:
       return {.sets = {joint_set("across x", x, 200, 1, 8, 12), joint_set("across y", y, 200, 1, 8, 12),
@@ -50,7 +39,12 @@ JointPattern pattern_at_20_m(BlockType type) {
               .irregular_share = 0.1,
               .least_thickness = 1.8};
     case BlockType::Rhombohedral:
-      return {.sets = rhombohedral_sets(joint_set("", z, 250, 1, 5, 7)), .discs = 24, .least_thickness = 2.0};
+      // At 65° to each other about the cube's diagonal; at 60° these were the diagonals (0 1 1), (1 0 1), (1 1 0).
+      return {.sets = {joint_set("oblique 1", normal_at(45.08, 355.64), 250, 1, 5, 7),
+                       joint_set("oblique 2", normal_at(45.08, 94.36), 250, 1, 5, 7),
+                       joint_set("oblique 3", normal_at(86.92, 225.00), 250, 1, 5, 7)},
+              .discs = 24,
+              .least_thickness = 2.0};
     case BlockType::Polyhedral:
       return {.sets = {joint_set("irregular", z, 1, 1, 3, 4)},  // κ does not matter: all are irregular
               .discs = 44,

@@ -87,31 +87,61 @@ void check_pattern(const JointPattern& pattern, double side) {
   (void)joint_ages(pattern.sets);
 }
 
-std::vector<int> joint_ages(const std::vector<JointSet>& sets) {
-  const auto index_of = [&](const JointSet& set, const std::string& name) {
+namespace {
+
+// The sets that a set ends at; nothing for columns and unknown names.
+std::vector<std::size_t> older_sets(const std::vector<JointSet>& sets, std::size_t s) {
+  std::vector<std::size_t> older;
+  for (const std::string& name : sets[s].ends_at)
     for (std::size_t i = 0; i < sets.size(); ++i)
-      if (sets[i].name == name) return i;
-    throw ParameterError("ends_at: expected the name of a joint set or \"columns\", got \"" + name + "\" for set \"" +
-                         set.name + "\"");
-  };
+      if (sets[i].name == name) older.push_back(i);
+  return older;
+}
+
+// The age of a set, and of those on which it depends; nothing when the path leads back to itself, which ends it.
+std::optional<int> find_age(const std::vector<JointSet>& sets, std::size_t s, std::vector<std::size_t>& path,
+                            std::vector<int>& ages) {
+  if (ages[s] >= 0) return ages[s];
+  const bool is_cycle = std::find(path.begin(), path.end(), s) != path.end();
+  path.push_back(s);
+  if (is_cycle) return std::nullopt;
+  int age = 0;
+  for (const std::size_t older : older_sets(sets, s)) {
+    const auto found = find_age(sets, older, path, ages);
+    if (!found) return std::nullopt;
+    age = std::max(age, *found + 1);
+  }
+  path.pop_back();
+  return ages[s] = age;
+}
+
+}  // namespace
+
+std::string termination_cycle(const std::vector<JointSet>& sets) {
   std::vector<int> ages(sets.size(), -1);
-  std::vector<std::size_t> path;
-  const auto visit = [&](auto&& self, std::size_t i) -> int {
-    if (ages[i] >= 0) return ages[i];
-    if (const auto from = std::find(path.begin(), path.end(), i); from != path.end()) {
-      std::string cycle;
-      for (auto at = from; at != path.end(); ++at) cycle += "\"" + sets[*at].name + "\" ends at ";
-      throw ParameterError("ends_at: expected sets of different age, got a cycle: " + cycle + "\"" + sets[i].name +
-                           "\"");
-    }
-    path.push_back(i);
-    int age = 0;
-    for (const std::string& name : sets[i].ends_at)
-      if (name != kColumns) age = std::max(age, 1 + self(self, index_of(sets[i], name)));
-    path.pop_back();
-    return ages[i] = age;
-  };
-  for (std::size_t i = 0; i < sets.size(); ++i) visit(visit, i);
+  for (std::size_t s = 0; s < sets.size(); ++s) {
+    std::vector<std::size_t> path;
+    if (find_age(sets, s, path, ages)) continue;
+    std::string cycle;
+    for (auto at = std::find(path.begin(), path.end(), path.back()); at != path.end(); ++at)
+      cycle += (cycle.empty() ? "\"" : " ends at \"") + sets[*at].name + "\"";
+    return cycle;
+  }
+  return {};
+}
+
+std::vector<int> joint_ages(const std::vector<JointSet>& sets) {
+  for (const JointSet& set : sets)
+    for (const std::string& name : set.ends_at)
+      require(name == kColumns || std::any_of(sets.begin(), sets.end(), [&](const JointSet& s) { return s.name == name; }),
+              "ends_at", "the name of a joint set, or \"columns\"", "\"" + name + "\"");
+  const std::string cycle = termination_cycle(sets);
+  require(cycle.empty(), "ends_at", "sets of different age", "a cycle: " + cycle);
+  std::vector<int> ages(sets.size(), -1);
+  for (std::size_t s = 0; s < sets.size(); ++s) {
+    std::vector<std::size_t> path;
+    (void)find_age(sets, s, path, ages);
+  }
   return ages;
 }
 
@@ -148,14 +178,6 @@ Vec3 first_eigenvector(Mat3 matrix) {
 }
 
 }  // namespace
-
-Vec3 mean_axis(const std::vector<Vec3>& normals) {
-  require(!normals.empty(), "normals", "at least one", 0.0);
-  Mat3 sum{0.0};
-  for (const Vec3& n : normals) sum += glm::outerProduct(n, n);
-  const Vec3 axis = first_eigenvector(sum);
-  return axis.z < 0.0 ? -axis : axis;
-}
 
 std::optional<Vec3> open_direction(const JointPattern& pattern) {
   const double least = std::pow(std::sin(radians(15.0)), 2);  // of cos² between the direction and the best set's normals

@@ -77,13 +77,14 @@ TEST_F(StrataFileTest, EveryKeyArrives) {
   ASSERT_TRUE(lower.joints);
   EXPECT_EQ(lower.joints->discs, 21);
   EXPECT_EQ(lower.joints->irregular_share, 0.25);
-  EXPECT_EQ(lower.joints->centre_spacing, 3.0) << "patterns are for 20 m: metres of a 10 m tile count double";
-  EXPECT_EQ(lower.joints->column_width, 4.0);
+  EXPECT_EQ(lower.joints->centre_spacing, 1.5);
+  ASSERT_EQ(lower.joints->columns.size(), 1u);
+  EXPECT_EQ(lower.joints->columns[0].width, 2.0);
   ASSERT_EQ(lower.joints->sets.size(), 1u);
   EXPECT_EQ(lower.joints->sets[0].kappa, 50.0);
   EXPECT_EQ(lower.joints->sets[0].share, 2.0);
-  EXPECT_EQ(lower.joints->sets[0].radius_lo, 2.0);
-  EXPECT_EQ(lower.joints->sets[0].radius_hi, 8.0);
+  EXPECT_EQ(lower.joints->sets[0].radius_lo, 1.0);
+  EXPECT_EQ(lower.joints->sets[0].radius_hi, 4.0);
   EXPECT_EQ(file.materials[1].block_type, BlockType::Columnar);
   ASSERT_EQ(file.strata.layers.size(), 3u);
   EXPECT_EQ(file.strata.layers[0].material, 1);
@@ -108,7 +109,7 @@ TEST_F(StrataFileTest, EveryKeyArrives) {
 
 TEST_F(StrataFileTest, JointsFallTowardsTheirDipDirection) {
   const auto normal = [&](const char* angles) {
-    return read(std::string(R"({"materials": [{"tile_side": 10, "joint_sets": [{)") + angles + "}]}]}").materials[0].joints->sets[0].normal;
+    return read(std::string(R"({"materials": [{"tile_side": 10, "irregular_share": 0.1, "joint_sets": [{)") + angles + "}]}]}").materials[0].joints->sets[0].normal;
   };
   EXPECT_LT(glm::length(normal(R"("dip_deg": 0)") - Vec3(0, 0, 1)), 1e-12);
   EXPECT_LT(glm::length(normal(R"("dip_deg": 90, "dip_direction_deg": 90)") - Vec3(1, 0, 0)), 1e-12) << "east";

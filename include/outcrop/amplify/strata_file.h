@@ -63,6 +63,10 @@ struct StrataFile {
 /// What make_tile needs for a material, its zeros replaced by their defaults; `default_side` where it names no tile side.
 [[nodiscard]] TileOptions tile_options(const RockMaterial& material, double default_side);
 
+/// A strata file with the block types as materials, each with all of its joints: to be copied from and edited. Read back it
+/// makes the types' tiles.
+[[nodiscard]] std::string block_types_json();
+
 /// The relief's measures with their defaults; the period divides the tile's side, so that the relief repeats with it.
 struct RockRelief {
   double period = 0.0, amplitude = 0.0;  ///< Metres.

@@ -131,10 +131,13 @@ enum class Domain {
 /// @throws ParameterError for a share, radius, concentration, count, spacing or termination that makes no sense.
 void check_pattern(const JointPattern& pattern, double side);
 
-/// The age of each set: 0 for those that end at none, else one more than the oldest possible: the greatest age among
-/// those that it ends at, plus one.
-/// @throws ParameterError for a set that ends at an unknown one, or at itself by way of others: the cycle's names.
+/// The age of each set: 0 for those that end at none, else the greatest among the sets that it ends at, and one more.
+/// @throws ParameterError for a set that ends at an unknown one, or at itself by way of others.
 [[nodiscard]] std::vector<int> joint_ages(const std::vector<JointSet>& sets);
+
+/// Sets that end at each other in a circle: "\"a\" ends at \"b\" ends at \"a\""; empty when there are none. Unknown names
+/// are passed over.
+[[nodiscard]] std::string termination_cycle(const std::vector<JointSet>& sets);
 
 /// A direction (unit) along which the pattern's joints close no block, because all of them run along it to within 15°;
 /// nothing when there is none.
@@ -142,9 +145,6 @@ void check_pattern(const JointPattern& pattern, double side);
 
 /// The pattern with the sets of one frame turned into the tile's.
 [[nodiscard]] JointPattern in_tile_frame(JointPattern pattern, JointFrame frame, const Mat3& tile_from_frame);
-
-/// The axis about which normals gather, up to its sign: the first eigenvector of Σ n nᵀ. @throws ParameterError for none.
-[[nodiscard]] Vec3 mean_axis(const std::vector<Vec3>& normals);
 
 /// P32, the area of discs in a volume: Σ π r² / side³, in 1/m.
 [[nodiscard]] double intensity(const std::vector<Disc>& discs, double side) noexcept;
