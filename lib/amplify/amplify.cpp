@@ -81,25 +81,7 @@ double mean_volume(const Tile& tile) {
   return sum / static_cast<double>(std::max<std::size_t>(tile.blocks.size(), 1));
 }
 
-/// How tiles lie in the world.
-struct Lie {
-  Mat3 world_from_bedding, bedding_from_tile;
-};
-
-Lie lie_of(const StrataFile& file) {
-  const double azimuth = file.placement.lattice_azimuth;
-  const Mat3 turn(Vec3(std::cos(azimuth), std::sin(azimuth), 0.0), Vec3(-std::sin(azimuth), std::cos(azimuth), 0.0),
-                  Vec3(0.0, 0.0, 1.0));
-  return {file.strata.world_from_bedding(), turn};
-}
-
-MadeRock make_rock(const RockMaterial& material, double default_side, const Lie& lie, const AmplifyOptions& options, Seed seed, const Task& task) {
-  TileOptions tile = tile_options(material, default_side);
-  // Directions were measured on the map, or in its beds: the tile is turned against both.
-  const Mat3 tile_from_bedding = glm::transpose(lie.bedding_from_tile);
-  tile.pattern = in_tile_frame(std::move(tile.pattern), JointFrame::Bedding, tile_from_bedding);
-  tile.pattern = in_tile_frame(std::move(tile.pattern), JointFrame::Map,
-                               tile_from_bedding * glm::transpose(lie.world_from_bedding));
+MadeRock make_rock(const TileOptions& tile, const AmplifyOptions& options, Seed seed, const Task& task) {
   MadeRock rock{.tile = make_tile(tile, seed, task), .aperture = tile.aperture, .rounding = tile.rounding};
   rock.block_size = std::cbrt(mean_volume(rock.tile));
   double all = 0.0, large = 0.0;
@@ -183,7 +165,6 @@ Amplified amplify(const Heightfield& heightfield, const StrataFile& strata_file,
   std::vector<char> used(material_count, 0);
   if (strata_file.strata.layers.empty()) used[0] = 1;
   for (const Stratum& layer : strata_file.strata.layers) used[layer.material] = 1;
-  const Lie lie = lie_of(strata_file);
   std::vector<MadeRock> rocks(material_count);
   double reach = 0.0;
   for (std::size_t m = 0; m < material_count; ++m) {
@@ -192,7 +173,7 @@ Amplified amplify(const Heightfield& heightfield, const StrataFile& strata_file,
     result.label_colours.push_back(material.colour);
     if (!used[m]) continue;
     task.check();
-    rocks[m] = make_rock(material, default_side, lie, options, options.seed + m, task);
+    rocks[m] = make_rock(tile_in_place(strata_file, m, default_side), options, options.seed + m, task);
     result.rocks.push_back(report_of(material, rocks[m]));
     result.mean_block_size = std::max(result.mean_block_size, rocks[m].block_size);
     if (!rocks[m].placeable) continue;
@@ -270,7 +251,7 @@ Amplified amplify(const Heightfield& heightfield, const StrataFile& strata_file,
           .cap = 0.1 * size};
       auto node = std::make_shared<Replication>(
           Rock{.tile = std::move(rocks[m].tile), .warp = make_warp(material, side, options.resolution),
-               .label = static_cast<Label>(m), .world_from_tile = lie.world_from_bedding * lie.bedding_from_tile,
+               .label = static_cast<Label>(m), .world_from_tile = world_from_tile(strata_file),
                .origin = Vec3(heightfield.lo(), 0.0)},
           stratified, std::move(replication), task);
       rock_report.replicated_blocks = node->block_count();

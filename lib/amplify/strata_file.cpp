@@ -1,5 +1,6 @@
 #include "outcrop/amplify/strata_file.h"
 
+#include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
@@ -82,7 +83,25 @@ Placement read_placement(const Json& json) {
   return placement;
 }
 
+Mat3 bedding_from_tile(const Placement& placement) {
+  const double c = std::cos(placement.lattice_azimuth);
+  const double s = std::sin(placement.lattice_azimuth);
+  return {Vec3(c, s, 0.0), Vec3(-s, c, 0.0), Vec3(0.0, 0.0, 1.0)};
+}
+
 }  // namespace
+
+Mat3 world_from_tile(const StrataFile& file) {
+  return file.strata.world_from_bedding() * bedding_from_tile(file.placement);
+}
+
+TileOptions tile_in_place(const StrataFile& file, std::size_t material, double default_side) {
+  TileOptions options = tile_options(file.materials[material], default_side);
+  const Mat3 tile_from_bedding = glm::transpose(bedding_from_tile(file.placement));
+  options.pattern = in_tile_frame(std::move(options.pattern), JointFrame::Bedding, tile_from_bedding);
+  options.pattern = in_tile_frame(std::move(options.pattern), JointFrame::Map, glm::transpose(world_from_tile(file)));
+  return options;
+}
 
 StrataFile read_strata(const std::filesystem::path& path) { return read_strata(read_json(path), path.parent_path()); }
 

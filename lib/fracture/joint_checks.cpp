@@ -12,6 +12,7 @@ namespace {
 constexpr double kFinestGap = 1.0 / 1000;  // Of the side: as many joints along one line.
 constexpr double kWidestDisc = 10.0;       // Of the side.
 constexpr int kPowerSteps = 64;
+constexpr double kIrregularToClose = 3.0;  // Irregular discs that are sure to close what sets leave open.
 
 void check_set(const JointSet& set, double side) {
   const double length = glm::length(set.normal);
@@ -193,7 +194,7 @@ std::optional<Vec3> open_direction(const JointPattern& pattern) {
     add(mean_outer_product(set));
   }
   if (!pattern.columns.empty()) add(Mat3(Vec3(0.5, 0, 0), Vec3(0, 0.5, 0), Vec3(0.0)));
-  if (by_share && pattern.irregular_share > 0.0 && pattern.discs > 0) add(Mat3(1.0 / 3.0));
+  if (by_share && pattern.irregular_share * pattern.discs >= kIrregularToClose) add(Mat3(1.0 / 3.0));
   if (parts.empty()) return Vec3(0, 0, 1);
   // The least eigenvector is the first one of what is left to the trace.
   const double trace = sum[0][0] + sum[1][1] + sum[2][2];

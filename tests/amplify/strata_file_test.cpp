@@ -109,7 +109,7 @@ TEST_F(StrataFileTest, EveryKeyArrives) {
 
 TEST_F(StrataFileTest, JointsFallTowardsTheirDipDirection) {
   const auto normal = [&](const char* angles) {
-    return read(std::string(R"({"materials": [{"tile_side": 10, "irregular_share": 0.1, "joint_sets": [{)") + angles + "}]}]}").materials[0].joints->sets[0].normal;
+    return read(std::string(R"({"materials": [{"tile_side": 10, "irregular_share": 1, "joint_sets": [{)") + angles + "}]}]}").materials[0].joints->sets[0].normal;
   };
   EXPECT_LT(glm::length(normal(R"("dip_deg": 0)") - Vec3(0, 0, 1)), 1e-12);
   EXPECT_LT(glm::length(normal(R"("dip_deg": 90, "dip_direction_deg": 90)") - Vec3(1, 0, 0)), 1e-12) << "east";

@@ -67,6 +67,13 @@ struct StrataFile {
 /// makes the types' tiles.
 [[nodiscard]] std::string block_types_json();
 
+/// How tiles lie in the world: their lattice is turned about the vertical, and then into the bedding.
+[[nodiscard]] Mat3 world_from_tile(const StrataFile& file);
+
+/// What make_tile needs for a material of the file where it lies: joint sets that were measured on the map or in its beds
+/// are turned into the tile's frame.
+[[nodiscard]] TileOptions tile_in_place(const StrataFile& file, std::size_t material, double default_side);
+
 /// The relief's measures with their defaults; the period divides the tile's side, so that the relief repeats with it.
 struct RockRelief {
   double period = 0.0, amplitude = 0.0;  ///< Metres.
