@@ -227,6 +227,7 @@ Tile make_tile(const TileOptions& options, Seed seed, const Task& task) {
   const std::vector<PlainHull> plain = parallel_map(
       clusters.list.size(),
       [&](std::size_t i) {
+        if (clusters.list[i].positions.empty()) return PlainHull{};  // a column thinner than the samples can tell
         const BlockMesh hull = thick_hull(clusters.list[i].positions, spacing);
         return PlainHull{volume(hull), hull.triangles.size()};
       },
