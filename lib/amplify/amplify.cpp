@@ -276,7 +276,7 @@ Amplified amplify(const Heightfield& heightfield, const StrataFile& strata_file,
       const double crack = placement.recess > 0.0 ? placement.crack_depth / (kReachInBlocks * placement.recess) : 0.0;
       const FieldPtr crack_floor = displaced_terrain(filled, zone.recess, crack);
       for (const Strata::Limb& limb : limbs) {
-        const FieldPtr body = stratum_body(strata, label, limb, kFarthestBody);
+        const FieldPtr body = stratum_body(strata, label, limb, kFarthestBody, kFarthestBody);
         ReplicationOptions replication{
             .domain = domain,
             .criterion = all_of({distance_between(placement.distance_lo * size, placement.distance_hi * size),
@@ -306,7 +306,7 @@ Amplified amplify(const Heightfield& heightfield, const StrataFile& strata_file,
         rock_report.bytes += node->tile_bytes();
         if (node->block_count() == 0) continue;
         if (body)
-          placed.push_back(bedded_rock(std::move(node), stratum_body(strata, label, limb, 2.0 * kCapInBlocks * size),
+          placed.push_back(bedded_rock(std::move(node), stratum_body(strata, label, limb, 2.0 * size, 2.0 * kCapInBlocks * size),
                                        {0.5 * aperture - swelling, crack_floor, kClosureSlope}));
         else
           placed.push_back(std::move(node));

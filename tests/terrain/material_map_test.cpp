@@ -68,7 +68,7 @@ TEST(MaterialMap, OverridesLayersAndBoundsBodies) {
   strata.map = MaterialMap(MapImage(pixels, heightfield), heightfield, {{{1.0f}, 0}, {{2.0f}, 2}});
   std::vector<FieldPtr> bodies;
   for (const Label material : {Label{0}, Label{1}, Label{2}})
-    bodies.push_back(stratum_body(strata, material, strata.limbs()[0], 1.0));
+    bodies.push_back(stratum_body(strata, material, strata.limbs()[0], 1e3, 1.0));
   int named = 0;
   for (int i = 0; i < 5000; ++i) {
     const double x = rng.uniform(1000.0, 1060.0), y = rng.uniform(2000.0, 2060.0), z = rng.uniform(-5.0, 5.0);

@@ -159,7 +159,7 @@ TEST(Strata, LimbsLieAlongTheFoldedBeddingAndCoverEachWavelengthOnce) {
       const Vec3 p(strata.reference + Vec2(x, y), 7.0);
       int inside = 0;
       for (const Strata::Limb& limb : limbs) {
-        const FieldPtr body = stratum_body(strata, 0, limb, 1.0);
+        const FieldPtr body = stratum_body(strata, 0, limb, 1e3, 1.0);
         if (body->value(p) > 0.0) continue;
         ++inside;
         const auto slope = [&](const Vec3& step) {
@@ -227,7 +227,7 @@ TEST(StratumBody, IsNegativeWhereItsMaterialStandsAndNoTwoMeet) {
     std::vector<Label> materials;
     for (const Strata::Limb& limb : strata.limbs())
       for (const Label material : {Label{0}, Label{1}, Label{2}}) {
-        bodies.push_back(stratum_body(strata, material, limb, 0.8));
+        bodies.push_back(stratum_body(strata, material, limb, 4.0, 0.8));
         materials.push_back(material);
       }
     Rng rng(seed, "points");
@@ -250,7 +250,7 @@ TEST(StratumBody, IsNegativeWhereItsMaterialStandsAndNoTwoMeet) {
 TEST(StratumBody, PassesTheFieldContract) {
   for (const Seed seed : {1, 2, 3, 5, 7, 11}) {
     const Strata strata = hard_strata(seed);
-    test::check_field_contract(*stratum_body(strata, 1, strata.limbs().back(), 0.8), {Vec3(-25.0), Vec3(25.0)}, 3);
+    test::check_field_contract(*stratum_body(strata, 1, strata.limbs().back(), 4.0, 0.8), {Vec3(-25.0), Vec3(25.0)}, 3);
   }
 }
 
@@ -259,7 +259,7 @@ TEST(StratumBody, IsTheDistanceToPlanarBeds) {
   strata.dip = radians(40.0);
   strata.dip_direction = radians(200.0);
   strata.layers = {{.material = 0, .top = 0.0}, {.material = 1, .top = 6.0}, {.material = 2}};
-  const FieldPtr body = stratum_body(strata, 1, strata.limbs()[0], 100.0);
+  const FieldPtr body = stratum_body(strata, 1, strata.limbs()[0], 1e3, 100.0);
   const Vec3 up = strata.world_from_bedding()[2];
   const double thickness = 6.0 * std::cos(strata.dip);
   for (const double t : {-3.0, -0.5, 0.0, 1.0, 2.0, 7.0})
@@ -268,7 +268,7 @@ TEST(StratumBody, IsTheDistanceToPlanarBeds) {
 
 TEST(StratumBody, IsNullWhereOneRockIsEverywhere) {
   const Strata strata;
-  EXPECT_EQ(stratum_body(strata, 0, strata.limbs()[0], 1.0), nullptr);
+  EXPECT_EQ(stratum_body(strata, 0, strata.limbs()[0], 1e3, 1.0), nullptr);
 }
 
 }  // namespace

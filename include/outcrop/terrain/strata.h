@@ -77,7 +77,9 @@ struct Strata {
 ///
 /// Negative inside, continuous, 0 on boundaries of layers, on faults and between limbs: blocks that end at it are bounded
 /// by bedding joints. Along planar beds and across faults it is the distance to the boundary, where beds fold or undulate
-/// that distance to within the change of their slope; at most `cap` > 0 outside. Null when it would be all of space.
-[[nodiscard]] FieldPtr stratum_body(const Strata& strata, Label material, const Strata::Limb& limb, double cap);
+/// that distance to within the change of their slope. Clamped to [−inside, outside], both > 0 m. Null when it would be
+/// all of space.
+[[nodiscard]] FieldPtr stratum_body(const Strata& strata, Label material, const Strata::Limb& limb, double inside,
+                                    double outside);
 
 }  // namespace outcrop
