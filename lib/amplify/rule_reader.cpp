@@ -131,20 +131,24 @@ PlacementRule read_rule(const Json& json, const std::vector<std::string_view>& m
     if (found) member->fail("one kind of rule each; \"all\" and \"any\" combine them", "\"" + std::string(key) + "\" and \"" + std::string(name) + "\"");
     found = member, key = name, rule.kind = kind;
   }
-  if (found) rule.place = found->place();
-  const bool border = found && rule.kind != Kind::Mask && rule.kind != Kind::Material && rule.kind != Kind::All &&
+  if (!found) {
+    for (const char* option : {"soft", "scale", "density", "height"}) (void)reader.has(option);
+    reader.finish();
+    json.fail("a rule, one of " + known, "none");
+  }
+  rule.place = found->place();
+  const bool border = rule.kind != Kind::Mask && rule.kind != Kind::Material && rule.kind != Kind::All &&
                       rule.kind != Kind::Any && rule.kind != Kind::Not;
   const bool angle = rule.kind == Kind::Slope || rule.kind == Kind::Aspect;
   const bool scaled = angle || rule.kind == Kind::Curvature;
   if (border) rule.soft = reader.number("soft", 0.0, {0.0, angle ? 180.0 : kFarthest});
-  if (scaled && found && reader.has("scale")) rule.scale = reader.number("scale", 0.0, {0.0, kFarthest, true});
+  if (scaled && reader.has("scale")) rule.scale = reader.number("scale", 0.0, {0.0, kFarthest, true});
   rule.density = reader.number("density", 1.0, {0.0, 1.0, true});
-  if (rule.kind == Kind::Water && found) {
+  if (rule.kind == Kind::Water) {
     rule.lo = 0.0;
     if (const Json* height = reader.child("height")) read_ordered_range(rule, *height, "height");
   }
   reader.finish();
-  if (!found) json.fail("a rule, one of " + known, "none");
   switch (rule.kind) {
     case Kind::Slope:
       read_ordered_range(rule, *found, key, {0.0, 90.0});

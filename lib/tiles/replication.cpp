@@ -18,6 +18,8 @@ namespace {
 
 constexpr std::size_t kChunk = 768;      // Points handled at a time by narrowed nodes: a mesher's brick of 9³.
 constexpr std::size_t kWorthAList = 600; // Boxes with more blocks are not narrowed: their children will be.
+constexpr double kEdgeStep = 0.04;       // Of an edge, at least, on the way along it.
+constexpr double kSplinter = 0.5;        // Of the least inner radius: how deep in its body a block must reach.
 constexpr double kFloatSlack = 2e-5;     // Metres; rounding of a block's float coordinates, some 10 m at 24 bits.
 
 int floor_div(int a, int b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
@@ -396,19 +398,28 @@ Replication::Reach Replication::reach_into_body(std::size_t block, const Vec3& w
   if (!options_.body) return Reach::Whole;
   const Field& body = *options_.body;
   const Box bounds = rock_.tile.blocks[block].bounds;
-  const double around =
-      body.lipschitz() * std::max(glm::length(bounds.lo), glm::length(bounds.hi));
+  const double around = body.lipschitz() * glm::length(glm::max(glm::abs(bounds.lo), glm::abs(bounds.hi)));
   const double middle = body.value(world_centre);
   if (middle >= around) return Reach::None;
   if (middle <= -around) return Reach::Whole;
-  // A splinter that the resolution cannot show is left out.
+  // Along the block's edges, in steps that its body's Lipschitz constant allows: a bed may pass between the corners. A
+  // splinter that the resolution cannot show is left out.
+  const BlockMesh& hull = rock_.tile.blocks[block].hull;
   double deepest = middle, shallowest = middle;
-  for (const Vec3& vertex : rock_.tile.blocks[block].hull.vertices) {
-    const double value = body.value(world_centre + rock_.world_from_tile * vertex);
-    deepest = std::min(deepest, value);
-    shallowest = std::max(shallowest, value);
-  }
-  return deepest > -options_.min_inradius ? Reach::None : shallowest <= 0.0 ? Reach::Whole : Reach::Part;
+  for (const auto& triangle : hull.triangles)
+    for (int corner = 0; corner < 3; ++corner) {
+      if (triangle[corner] > triangle[(corner + 1) % 3]) continue;  // Each edge once, in one of its two triangles.
+      const Vec3 from = world_centre + rock_.world_from_tile * hull.vertices[triangle[corner]];
+      const Vec3 along = rock_.world_from_tile * (hull.vertices[triangle[(corner + 1) % 3]] - hull.vertices[triangle[corner]]);
+      const double step = 1.0 / (body.lipschitz() * std::max(glm::length(along), 1e-9));
+      for (double t = 0.0; t < 1.0 + kEdgeStep;) {
+        const double value = body.value(from + std::min(t, 1.0) * along);
+        deepest = std::min(deepest, value);
+        shallowest = std::max(shallowest, value);
+        t += std::max(std::abs(value) * step, kEdgeStep);
+      }
+    }
+  return deepest > -kSplinter * options_.min_inradius ? Reach::None : shallowest <= 0.0 ? Reach::Whole : Reach::Part;
 }
 
 double Replication::drop_threshold(const IVec3& cell, std::size_t block) const {
