@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Races the polygonizer against OpenVDB and, where cargo is, fidget: one model, one thread, CPU time of the same run.
 
-Usage: race.py BUILD_FOLDER
+Usage: race.py BUILD_FOLDER [--quick]   (--quick: without fidget)
 
-Prints a Markdown table. The model is OUTCROP_BENCH_MODEL's, else one made up. fidget is fetched from crates.io and
+Prints a Markdown table, and leaves what it holds in BUILD_FOLDER/race.json, for bars.py. The model is OUTCROP_BENCH_MODEL's, else one made up. fidget is fetched from crates.io and
 built into BUILD_FOLDER/fidget; its finest mesh takes a minute.
 """
 import json
@@ -53,7 +53,8 @@ def run_fidget(fidget, race, folder):
 
 
 def main():
-    if len(sys.argv) != 2:
+    quick = "--quick" in sys.argv[2:]
+    if len(sys.argv) != 2 + quick:
         sys.exit(__doc__.strip())
     build = Path(sys.argv[1]).resolve()
     race = build / "bin/outcrop_race"
@@ -62,11 +63,12 @@ def main():
     version, *results = lines_of(race)
     model = Path(os.environ.get("OUTCROP_BENCH_MODEL", "made up")).name
     print(f"model     {model}\nOpenVDB   {version['openvdb']}")
-    fidget = built_fidget(build)
+    fidget = None if quick else built_fidget(build)
     if fidget:
         with tempfile.TemporaryDirectory() as folder:
             results += run_fidget(fidget, race, Path(folder))
 
+    (build / "race.json").write_text(json.dumps(results))
     header("cells", "program", "CPU time", "its stages", "times " + OURS, "triangles", "open edges",
            "edges used twice in one direction", "vertices with several fans")
     for cell in sorted({r["cell"] for r in results}, reverse=True):

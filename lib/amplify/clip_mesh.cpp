@@ -82,26 +82,27 @@ class Clipper {
   TriangleMesh result_;
 };
 
-/// The sides of a box from 0 to `extent` that a point lies on, a bit each.
-unsigned sides_of(const Vec3f& p, const Vec3& extent) {
+/// The sides of a box that a point lies on, a bit each.
+unsigned sides_of(const Vec3f& p, const Box& box) {
   unsigned sides = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    const double slack = kOnSide * extent[axis];
-    if (p[axis] < slack) sides |= 1u << (2 * axis);
-    if (p[axis] > extent[axis] - slack) sides |= 2u << (2 * axis);
+    const double slack = kOnSide * std::max(std::abs(box.lo[axis]), std::abs(box.hi[axis]));
+    if (p[axis] < box.lo[axis] + slack) sides |= 1u << (2 * axis);
+    if (p[axis] > box.hi[axis] - slack) sides |= 2u << (2 * axis);
   }
   return sides;
 }
 
 }  // namespace
 
-TriangleMesh without_walls(const TriangleMesh& mesh, const Vec3& extent) {
+TriangleMesh without_walls(const TriangleMesh& mesh, const Box& extent) {
+  const Box box = extent.moved(-mesh.origin);
   std::vector<std::uint32_t> kept(mesh.positions.size(), kUnused);
   TriangleMesh result;
   result.origin = mesh.origin;
   for (const auto& t : mesh.triangles) {
     const auto& p = mesh.positions;
-    if ((sides_of(p[t[0]], extent) & sides_of(p[t[1]], extent) & sides_of(p[t[2]], extent)) != 0) continue;
+    if ((sides_of(p[t[0]], box) & sides_of(p[t[1]], box) & sides_of(p[t[2]], box)) != 0) continue;
     result.triangles.push_back(t);
     for (const std::uint32_t v : t) kept[v] = 0;
   }

@@ -12,7 +12,7 @@ namespace outcrop {
 
 /// A mesh that polygonize() made with Border::Closed without the walls at the region's border: what it makes with
 /// Border::Open, to the byte.
-/// @param extent  Of what was meshed, PolygonizeStatistics::extent; the mesh's origin is still the region's lower corner.
-[[nodiscard]] TriangleMesh without_walls(const TriangleMesh& mesh, const Vec3& extent);
+/// @param extent  PolygonizeStatistics::extent.
+[[nodiscard]] TriangleMesh without_walls(const TriangleMesh& mesh, const Box& extent);
 
 }  // namespace outcrop

@@ -44,6 +44,9 @@ void write_preview(const std::filesystem::path& path, const Preview& preview);
 /// Writes the solid that a closed mesh bounds as a narrow-band level set, `.vdb`, in the mesh's own coordinates.
 void write_level_set(const std::filesystem::path& path, const TriangleMesh& mesh, double voxel, const Task& task);
 
+/// Cells between a mesh's origin and its farthest point, so that a float's rounding stays within a thousandth of a cell.
+inline constexpr double kExactCells = 1 << 15;
+
 /// Half of the machine's memory, or `gib` when that is > 0; bytes. @throws ParameterError for anything else.
 [[nodiscard]] std::size_t memory_limit_bytes(double gib);
 

@@ -57,7 +57,7 @@ void write_options(JsonWriter& json, const AmplifyReport& report) {
   json.boolean("solid", report.solid).value("threads", report.threads);
   write_count(json, "memory_limit", report.memory_limit);
   json.end_object();
-  if (report.heightfield) write_vector(json, "origin", {report.heightfield->lo().x, report.heightfield->lo().y});
+  write_vector(json, "origin", {report.origin.x, report.origin.y, report.origin.z});
 }
 
 void write_planes(JsonWriter& json, std::string_view key, double filled_share, double mean, std::size_t most) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -22,7 +23,11 @@ constexpr float kRimOffset = 1.0f;       // Nodes; what smoothing leaves on grou
 constexpr float kRimSharpness = 2.0f;    // Where a rim bends, the true distance times this bounds the smoothed one.
 constexpr double kProbesPerCell = 2.0;   // Slopes looked at across a cell of the heightfield, at least,
 constexpr int kMostProbes = 4;           // … but no more than this many across a cell of the raster.
+constexpr int kRuleMargin = 2;           // Nodes of the coarse raster that a rule's border loses: bilinear weights are 0 beyond it.
+constexpr double kDownhill = 0.5;        // Tangent of a fall that counts as down to where the ground withdraws.
+constexpr double kAdvanceWeight = 4.0;   // The advance is whole where the weight is a quarter: blocks stand out of thin rock, too.
 constexpr double kCertainlySteep = 1.005;  // Times the threshold's tangent: between two probes the slope may dip.
+constexpr int kTile = 64;                // Nodes, across squares of the raster that are gentle as a whole or looked at.
 
 /// A raster of nodes over a rectangle, rows from the south.
 struct Raster {
@@ -41,6 +46,18 @@ struct Raster {
   [[nodiscard]] std::size_t neighbour(int column, int row, int dx, int dy) const {
     return index(std::clamp(column + dx, 0, width - 1), std::clamp(row + dy, 0, height - 1));
   }
+  /// Part of it: from node `first` to node `last`.
+  [[nodiscard]] Raster part(const IVec2& first, const IVec2& last) const {
+    return {last.x - first.x + 1, last.y - first.y + 1, node(first.x, first.y), spacing};
+  }
+  /// The part that holds all nodes of a rectangle and those around it.
+  [[nodiscard]] Raster around(const Vec2& from, const Vec2& to) const {
+    const IVec2 end(width - 1, height - 1);
+    const IVec2 first = glm::clamp(IVec2(glm::floor((from - lo) / spacing)), IVec2(0), end - 1);
+    const IVec2 last = glm::clamp(IVec2(glm::ceil((to - lo) / spacing)), first + 1, end);
+    return part(first, last);
+  }
+  [[nodiscard]] Vec2 hi() const { return node(width - 1, height - 1); }
   /// The node next to a position.
   [[nodiscard]] std::size_t nearest(const Vec2& p) const {
     const Vec2 at = glm::round((p - lo) / spacing);
@@ -65,6 +82,25 @@ struct Raster {
   }
 };
 
+/// Where the heightfield's bounds leave room for steep ground: a box around it, empty where they leave none.
+struct SteepPart {
+  Vec2 lo{std::numeric_limits<double>::infinity()}, hi{-std::numeric_limits<double>::infinity()};
+  [[nodiscard]] bool empty() const { return lo.x > hi.x; }
+};
+
+SteepPart steep_part(const Heightfield& heightfield, const Raster& raster, double slope) {
+  const double tangent = std::tan(slope), tile = kTile * raster.spacing;
+  SteepPart part;
+  for (int row = 0; row < raster.height; row += kTile)
+    for (int column = 0; column < raster.width; column += kTile) {
+      const Vec2 lo = raster.node(column, row), hi = glm::min(lo + tile, raster.hi());
+      if (heightfield.slope_bound(lo, hi) < tangent) continue;
+      part.lo = glm::min(part.lo, lo);
+      part.hi = glm::max(part.hi, hi);
+    }
+  return part;
+}
+
 /// Nodes about which all the ground is steep, as far as the raster's next cells: so that bilinear interpolation between nodes
 /// gives 0 wherever the ground is not.
 std::vector<char> steep_nodes(const Heightfield& heightfield, const Raster& raster, double slope, const Task& task) {
@@ -72,11 +108,20 @@ std::vector<char> steep_nodes(const Heightfield& heightfield, const Raster& rast
   const int probes = std::clamp(static_cast<int>(std::ceil(kProbesPerCell * raster.spacing / cell)), 1, kMostProbes);
   const Raster fine{(raster.width - 1) * probes + 1, (raster.height - 1) * probes + 1, raster.lo, raster.spacing / probes};
   const double steepness = std::pow(kCertainlySteep * std::tan(slope), 2.0);
+  const double tangent = std::tan(slope);
   std::vector<char> steep(fine.count());
-  fine.for_each_node([&](std::size_t i, int column, int row) {
-    const Vec2 p = fine.node(column, row);
-    const Heightfield::Sample s = heightfield.at(p.x, p.y);
-    steep[i] = s.hx * s.hx + s.hy * s.hy >= steepness && (!heightfield.has_holes() || heightfield.hole_distance(p.x, p.y) < 0.0);
+  parallel_for(static_cast<std::size_t>(fine.height), [&](std::size_t row) {
+    for (int first = 0; first < fine.width; first += kTile) {
+      const int end = std::min(first + kTile, fine.width);
+      const int y = static_cast<int>(row);
+      if (heightfield.slope_bound(fine.node(first, y), fine.node(end - 1, y)) < tangent) continue;
+      for (int column = first; column < end; ++column) {
+        const Vec2 p = fine.node(column, y);
+        const Heightfield::Sample s = heightfield.at(p.x, p.y);
+        steep[fine.index(column, y)] = s.hx * s.hx + s.hy * s.hy >= steepness &&
+                                       (!heightfield.has_holes() || heightfield.hole_distance(p.x, p.y) < 0.0);
+      }
+    }
   }, Task{.stop = task.stop});  // Progress counts the raster's own rows.
   std::vector<char> all_about(raster.count());
   raster.for_each_node([&](std::size_t i, int column, int row) {
@@ -120,58 +165,131 @@ std::vector<float> distance_to_rim(const Raster& raster, const std::vector<char>
   return distance;
 }
 
-struct Offset {
+/// A node near by, and how much of its height counts: all within a radius, none a node beyond it.
+struct Neighbour {
   int dx, dy;
-  double distance;
+  float recess, advance;
 };
 
-/// Raster offsets within `radius`.
-std::vector<Offset> disc_offsets(double radius, double spacing) {
-  const int reach = static_cast<int>(std::ceil(radius / spacing));
-  std::vector<Offset> offsets;
+/// The nodes within two radii.
+std::vector<Neighbour> disc(double recess_radius, double advance_radius, double spacing) {
+  const int reach = static_cast<int>(std::ceil(std::max(recess_radius, advance_radius) / spacing));
+  std::vector<Neighbour> nodes;
   for (int dy = -reach; dy <= reach; ++dy)
     for (int dx = -reach; dx <= reach; ++dx) {
-      const double distance = spacing * std::hypot(dx, dy);
-      if (distance <= radius + spacing) offsets.push_back({dx, dy, distance});
+      const auto weight = [distance = spacing * std::hypot(dx, dy), spacing](double radius) {
+        return static_cast<float>(std::clamp(1.0 + (radius - distance) / spacing, 0.0, 1.0));
+      };
+      const Neighbour n{dx, dy, weight(recess_radius), weight(advance_radius)};
+      if (n.recess > 0.0f || n.advance > 0.0f) nodes.push_back(n);
     }
-  return offsets;
+  return nodes;
 }
 
-/// How far the ground falls and rises within the reach.
+/// How far the ground falls and rises within the reach, and the least weight of the ground down to where it withdraws.
 struct Envelopes {
-  RasterLayer fall, rise;
+  RasterLayer fall, rise, weight;
 };
 
 template <class Near, class Reach>
-Envelopes make_envelopes(const Heightfield& heightfield, const Raster& raster, double recess, double largest_radius,
-                         const Near& near, const Reach& reach_at, const Task& task) {
+Envelopes make_envelopes(const Heightfield& heightfield, const Raster& raster, double recess, const Near& near,
+                         const Reach& reach_at, const RasterLayer* rule, const Task& task) {
   std::vector<float> ground(raster.count()), fall(raster.count(), 0.0f), rise(raster.count(), 0.0f);
+  std::vector<float> own(rule ? raster.count() : 0), weight(rule ? raster.count() : 0, 1.0f);
   raster.for_each_node([&](std::size_t i, int column, int row) {
     const Vec2 p = raster.node(column, row);
     ground[i] = static_cast<float>(heightfield.at(p.x, p.y).h);
+    if (rule) own[i] = static_cast<float>(rule->at(p.x, p.y).h);
   });
-  const std::vector<Offset> offsets = disc_offsets(largest_radius, raster.spacing);
+  parallel_for(static_cast<std::size_t>(raster.height), [&](std::size_t r) {
+    const int row = static_cast<int>(r);
+    std::vector<Neighbour> neighbours;
+    double radius = -1.0;  // Theirs; it changes where the material does.
+    for (int column = 0; column < raster.width; ++column) {
+      const Vec2 p = raster.node(column, row);
+      if (!near(p)) continue;
+      if (const double reach = reach_at(p); reach != radius) {
+        radius = reach;
+        neighbours = disc(recess * radius, radius, raster.spacing);
+      }
+      const std::size_t i = raster.index(column, row);
+      float fallen = 0.0f, risen = 0.0f;
+      for (const Neighbour& n : neighbours) {
+        const float difference = ground[raster.neighbour(column, row, n.dx, n.dy)] - ground[i];
+        fallen = std::max(fallen, -n.recess * difference);
+        risen = std::max(risen, n.advance * difference);
+        if (!rule || (n.dx == 0 && n.dy == 0)) continue;
+        // Ground beside counts less the more level it lies, so that the least weight does not jump.
+        const double level = kDownhill * raster.spacing * std::hypot(n.dx, n.dy);
+        const float down = n.recess * static_cast<float>(std::clamp(-difference / level, 0.0, 1.0));
+        weight[i] = std::min(weight[i], 1.0f - down * (1.0f - own[raster.neighbour(column, row, n.dx, n.dy)]));
+      }
+      fall[i] = fallen;
+      rise[i] = risen;
+    }
+    task.advance();
+  }, task);
+  return {raster.layer(std::move(fall)), raster.layer(std::move(rise)), rule ? raster.layer(std::move(weight)) : RasterLayer()};
+}
+
+/// The weight on a raster, 0 at nodes within kRuleMargin of one where it is 0: 0 wherever weight_at is.
+///
+/// @param wanted  Which nodes are asked; the rest has 1.
+template <class Wanted>
+RasterLayer make_weight(const Heightfield& heightfield, const Raster& raster, const std::function<double(const Vec3&)>& weight_at,
+                        const Wanted& wanted) {
+  std::vector<float> asked(raster.count(), 1.0f), weight(raster.count());
   raster.for_each_node([&](std::size_t i, int column, int row) {
     const Vec2 p = raster.node(column, row);
-    if (!near(p)) return;
-    const double advance_radius = reach_at(p), recess_radius = recess * advance_radius;
-    for (const Offset& o : offsets) {
-      const auto weight = [&](double radius) {
-        return static_cast<float>(std::clamp(1.0 + (radius - o.distance) / raster.spacing, 0.0, 1.0));
-      };
-      const float difference = ground[raster.neighbour(column, row, o.dx, o.dy)] - ground[i];
-      fall[i] = std::max(fall[i], -weight(recess_radius) * difference);
-      rise[i] = std::max(rise[i], weight(advance_radius) * difference);
-    }
-  }, task);
-  return {raster.layer(std::move(fall)), raster.layer(std::move(rise))};
+    if (wanted(p)) asked[i] = static_cast<float>(std::clamp(weight_at(Vec3(p, heightfield.at(p.x, p.y).h)), 0.0, 1.0));
+  });
+  raster.for_each_node([&](std::size_t i, int column, int row) {
+    weight[i] = asked[i];
+    for (int dy = -kRuleMargin; dy <= kRuleMargin; ++dy)
+      for (int dx = -kRuleMargin; dx <= kRuleMargin; ++dx)
+        if (asked[raster.neighbour(column, row, dx, dy)] <= 0.0f) weight[i] = 0.0f;
+  });
+  return raster.layer(std::move(weight));
+}
+
+/// For each node the nearest one that is marked, within `radius`, else itself.
+NearestGround nearest_ground(const Raster& raster, const std::vector<char>& marked, double radius) {
+  std::vector<Neighbour> neighbours = disc(radius, radius, raster.spacing);
+  std::ranges::stable_sort(neighbours, {}, [](const Neighbour& n) { return n.dx * n.dx + n.dy * n.dy; });
+  const std::vector<float> distance = raster.distance(marked, true, radius + 2.0 * raster.spacing);
+  std::vector<Vec2> nodes(raster.count());
+  raster.for_each_node([&](std::size_t i, int column, int row) {
+    nodes[i] = raster.node(column, row);
+    if (distance[i] > radius) return;
+    for (const Neighbour& n : neighbours)
+      if (marked[raster.neighbour(column, row, n.dx, n.dy)]) {
+        nodes[i] = raster.node(std::clamp(column + n.dx, 0, raster.width - 1), std::clamp(row + n.dy, 0, raster.height - 1));
+        break;
+      }
+  });
+  return {raster.width, raster.height, raster.lo, raster.spacing, std::move(nodes)};
 }
 
 }  // namespace
 
+Vec2 NearestGround::at(const Vec2& p) const noexcept {
+  if (!nodes_) return p;
+  const Vec2 place = glm::clamp(glm::round((p - lo_) / spacing_), Vec2(0.0), Vec2(width_ - 1, height_ - 1));
+  return (*nodes_)[static_cast<std::size_t>(place.y) * width_ + static_cast<std::size_t>(place.x)];
+}
+
 RockZone make_rock_zone(const Heightfield& heightfield, const RockZoneOptions& options, const Task& task) {
-  const Raster raster = Raster::over(options.lo, options.hi, options.spacing);
-  const Raster coarse = Raster::over(options.lo, options.hi, std::max(options.spacing, options.reach / kNodesPerReach));
+  const double largest_radius = options.reach * std::max(1.0, options.recess);
+  const double ledge = kLedge * options.block_size;
+  const double coarse_spacing = std::max(options.spacing, options.reach / kNodesPerReach);
+  // Gentle ground costs its bounds alone: rasters end where nothing steep is near, and are 0 beyond.
+  const Raster everything = Raster::over(options.lo, options.hi, options.spacing);
+  const SteepPart part = steep_part(heightfield, everything, options.slope);
+  if (part.empty()) return {.slope = options.slope};
+  const double near = largest_radius + 2.0 * ledge + 4.0 * coarse_spacing;
+  const Raster coarse =
+      Raster::over(options.lo, options.hi, coarse_spacing).around(part.lo - 2.0 * near, part.hi + 2.0 * near);
+  const Raster raster = everything.around(part.lo - near, part.hi + near);
   task.begin("finding steep ground", static_cast<std::uint64_t>(raster.height) + coarse.height);
   const auto reach_at = [&](const Vec2& p) {
     return options.reach_at ? options.reach_at(Vec3(p, heightfield.at(p.x, p.y).h)) : options.reach;
@@ -179,20 +297,48 @@ RockZone make_rock_zone(const Heightfield& heightfield, const RockZoneOptions& o
   std::vector<char> steep = steep_nodes(heightfield, raster, options.slope, task);
   if (options.reach_at)
     raster.for_each_node([&](std::size_t i, int column, int row) { steep[i] = steep[i] && reach_at(raster.node(column, row)) > 0.0; });
-  close_ledges(raster, steep, kLedge * options.block_size);
+  close_ledges(raster, steep, ledge);
+  RockZone zone{.weighted = options.weight_at || options.rim > 0.0, .slope = options.slope};
+  RasterLayer rule;
+  if (options.weight_at) {
+    const double about = (kRuleMargin + 3) * coarse.spacing;
+    const std::vector<float> distance = raster.distance(steep, true, about + 2.0 * raster.spacing);
+    rule = make_weight(heightfield, coarse, options.weight_at,
+                       [&](const Vec2& p) { return distance[raster.nearest(p)] <= about; });
+    raster.for_each_node([&](std::size_t i, int column, int row) {
+      const Vec2 p = raster.node(column, row);
+      steep[i] = steep[i] && rule.at(p.x, p.y).h > 0.0;
+    });
+  }
 
-  const double largest_radius = options.reach * std::max(1.0, options.recess);
   const std::vector<float> to_steep = raster.distance(steep, true, largest_radius + 2.0 * coarse.spacing);
   const auto near_steep = [&](const Vec2& p, double radius) { return to_steep[raster.nearest(p)] <= radius; };
   const Envelopes envelopes =
-      make_envelopes(heightfield, coarse, options.recess, largest_radius,
-                     [&](const Vec2& p) { return near_steep(p, 2.0 * coarse.spacing); }, reach_at, task);
+      make_envelopes(heightfield, coarse, options.recess,
+                     [&](const Vec2& p) { return near_steep(p, 2.0 * coarse.spacing); }, reach_at,
+                     options.weight_at ? &rule : nullptr, task);
   std::vector<float> nearby(coarse.count());
   coarse.for_each_node([&](std::size_t i, int column, int row) {
     nearby[i] = near_steep(coarse.node(column, row), largest_radius + coarse.spacing) ? 1.0f : 0.0f;
   });
 
   const std::vector<float> rim = distance_to_rim(raster, steep, largest_radius / kAdvanceGrowth + raster.spacing);
+  const auto rim_weight = [&](std::size_t i) { return options.rim > 0.0 ? std::min(rim[i] / options.rim, 1.0) : 1.0; };
+  const auto weight_of_rule = [&](const Vec2& p) { return options.weight_at ? rule.at(p.x, p.y).h : 1.0; };
+  if (zone.weighted) {
+    std::vector<float> rims(coarse.count()), weights(coarse.count());
+    std::vector<char> marked(coarse.count());
+    coarse.for_each_node([&](std::size_t i, int column, int row) {
+      const Vec2 p = coarse.node(column, row);
+      const std::size_t fine = raster.nearest(p);
+      rims[i] = static_cast<float>(rim_weight(fine));
+      weights[i] = static_cast<float>(weight_of_rule(p) * rims[i]);
+      marked[i] = steep[fine];
+    });
+    zone.ground = nearest_ground(coarse, marked, largest_radius + coarse.spacing);
+    zone.rim = coarse.layer(std::move(rims));
+    zone.weight = coarse.layer(std::move(weights));
+  }
   std::vector<float> recess(raster.count(), 0.0f), advance(raster.count(), 0.0f);
   raster.for_each_node([&](std::size_t i, int column, int row) {
     if (!steep[i]) return;
@@ -205,9 +351,18 @@ RockZone make_rock_zone(const Heightfield& heightfield, const RockZoneOptions& o
                                             slope * std::min<double>(kRecessGrowth * rim[i], options.recess * reach)));
     advance[i] = static_cast<float>(
         std::min(envelopes.rise.at(p.x, p.y).h, std::max(slope, 1.0) * kAdvanceGrowth * rim[i]));
+    if (!zone.weighted) return;
+    const double weight = weight_of_rule(p) * rim_weight(i);
+    // Where few blocks stand the base must not gape as a pit, nor reach down to where none do.
+    const double withdrawn = options.weight_at ? std::min<double>(weight, envelopes.weight.at(p.x, p.y).h) : weight;
+    recess[i] *= static_cast<float>(withdrawn * withdrawn);
+    advance[i] *= static_cast<float>(std::min(kAdvanceWeight * weight, 1.0));
   });
-  const bool empty = std::ranges::none_of(steep, [](char s) { return s != 0; });
-  return {raster.layer(std::move(recess)), raster.layer(std::move(advance)), coarse.layer(std::move(nearby)), options.slope, empty};
+  zone.empty = std::ranges::none_of(steep, [](char s) { return s != 0; });
+  zone.recess = raster.layer(std::move(recess));
+  zone.advance = raster.layer(std::move(advance));
+  zone.nearby = coarse.layer(std::move(nearby));
+  return zone;
 }
 
 }  // namespace outcrop

@@ -37,12 +37,23 @@ constexpr double kPreviewPixelsASecond = 10e3;
 constexpr double kLevelSetCellsASecond = 100e3;  // 77 to 118 thousand at 0.15 to 0.4 m; cells of the closed surface.
 
 /// A sensible line for files: what was made from what, without paths or thread counts, so that runs compare to the byte.
-std::vector<std::string> comments(const AmplifyReport& report, const Vec2& origin) {
+std::vector<std::string> comments(const AmplifyReport& report) {
   const AmplifyOptions& options = report.options;
+  const Vec3& origin = report.origin;
   return {"outcrop " + std::string(version()) + " amplify " + report.heightmap.filename().string(),
           "strata " + (report.strata.empty() ? "default" : report.strata.filename().string()),
           "seed " + std::to_string(options.seed) + ", resolution " + number_text(options.resolution, 9) + " m",
-          "origin " + number_text(origin.x, 15) + " " + number_text(origin.y, 15)};
+          "origin " + number_text(origin.x, 15) + " " + number_text(origin.y, 15) + " " + number_text(origin.z, 15)};
+}
+
+/// The terrain's south-west sample at sea level; along axes on which floats are too coarse for the region's cells there,
+/// the last whole metre before the region.
+Vec3 mesh_origin(const Heightfield& heightfield, const Box& region, double resolution) {
+  Vec3 origin(heightfield.lo(), 0.0);
+  for (int axis = 0; axis < 3; ++axis)
+    if (std::max(region.hi[axis] - origin[axis], origin[axis] - region.lo[axis]) > kExactCells * resolution)
+      origin[axis] = std::floor(region.lo[axis]);
+  return origin;
 }
 
 Heightfield make_heightfield(const AmplifyRun& run, HeightfieldFile file) {
@@ -285,6 +296,11 @@ class Runner {
     report_.amplified = amplify(*report_.heightfield, report_.rock, report_.options, task_);
     report_.seconds.tiles = amplified().tile_seconds;
     report_.seconds.placement = amplified().placement_seconds;
+    report_.origin = mesh_origin(*report_.heightfield, amplified().region, window.resolution);
+    const Vec3& o = report_.origin;
+    if (!run_.meshes.empty() && o != Vec3(report_.heightfield->lo(), 0.0))
+      note("mesh positions count from " + number_text(o.x, 15) + " " + number_text(o.y, 15) + " " + number_text(o.z, 15) +
+           ", near the region, so that floats hold its cells");
     if (block_count(amplified()) == 0)
       note("no ground here is steeper than " + number_text(degrees(report_.rock.placement.slope)) +
            " degrees, or blocks are below the resolution: the terrain stays as it is");
@@ -315,6 +331,7 @@ class Runner {
 
   [[nodiscard]] PolygonizeOptions mesh_options() const {
     return {.region = amplified().region,
+            .origin = report_.origin,
             .resolution = report_.options.resolution,
             .tolerance = tolerance_,
             .triangles = run_.triangles,
@@ -338,8 +355,7 @@ class Runner {
   }
 
   [[nodiscard]] MeshMetadata metadata() const {
-    const Vec2 origin = report_.heightfield->lo();
-    return {comments(report_, origin), amplified().label_names, amplified().label_colours, Vec3(origin, 0.0)};
+    return {comments(report_), amplified().label_names, amplified().label_colours, report_.origin};
   }
 
   /// All but level sets and sheets cut at missing data can be written while it is made.
@@ -365,7 +381,6 @@ class Runner {
   /// Makes and holds the mesh as a whole: to cut it, or to measure distances from it.
   void whole_mesh(Writers& writers) {
     const bool level_set = wants_level_set({run_.meshes, {}, {}});
-    const Vec3 origin(report_.heightfield->lo(), 0.0);
     TriangleMesh solid;
     if (writers.any()) {
       PolygonizeOptions options = mesh_options();
@@ -373,20 +388,20 @@ class Runner {
       if (shared) options.border = Border::Closed;
       PolygonizeResult made = polygonize(is_cut() ? *amplified().ground : *amplified().field, options, task_);
       report_.polygonized = made.statistics;
-      if (shared) solid = rebased({made.mesh.origin, made.mesh.positions, {}, {}, made.mesh.triangles}, origin);
+      if (shared) solid = {made.mesh.origin, made.mesh.positions, {}, {}, made.mesh.triangles};
       if (shared && !run_.solid) made.mesh = without_walls(made.mesh, made.statistics.extent);
       if (is_cut()) made.mesh = clip_mesh(made.mesh, *amplified().hole);
       for (MeshSink* const sink : writers.sinks()) feed(made.mesh, *sink);
     }
-    if (level_set) level_sets(solid.triangles.empty() ? solid_mesh(origin) : solid);
+    if (level_set) level_sets(solid.triangles.empty() ? solid_mesh() : solid);
   }
 
   /// That of --solid: nothing floats in it and no void hides. A level set holds it, whatever the meshes are.
-  [[nodiscard]] TriangleMesh solid_mesh(const Vec3& origin) const {
+  [[nodiscard]] TriangleMesh solid_mesh() const {
     PolygonizeOptions options = mesh_options();
     options.border = Border::Closed;
     options.normals = options.labels = false;
-    return rebased(polygonize(*amplified().field, options, task_).mesh, origin);
+    return polygonize(*amplified().field, options, task_).mesh;
   }
 
   void level_sets(const TriangleMesh& solid) {

@@ -55,7 +55,11 @@ PolygonizeOptions mesh_options(const PolygonizeRun& run, const Scene& scene) {
   const double resolution = run.resolution ? *run.resolution : scene.resolution.value_or(longest / kDefaultCells);
   require(resolution >= kLeastLength && resolution <= longest, "--resolution",
           number_text(kLeastLength) + " m to " + number_text(longest) + " m, the region's longest side", resolution);
+  // In the scene's own coordinates, unless floats are too coarse for its cells there.
+  const Vec3 far = glm::max(glm::abs(region->lo), glm::abs(region->hi));
+  const bool near = std::max({far.x, far.y, far.z}) <= kExactCells * resolution;
   return {.region = *region,
+          .origin = near ? std::optional(Vec3(0.0)) : std::nullopt,
           .resolution = resolution,
           .tolerance = run.tolerance,
           .triangles = run.triangles,

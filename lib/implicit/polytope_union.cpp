@@ -159,10 +159,35 @@ void between_chunk(std::span<const PlacedKernel> polytopes, const Points& points
     if (values[i] < floors[i] || highest[i] < floors[i]) values[i] = floors[i];
 }
 
+/// A chunk of one point, without the buffers: the same bits.
+void between_one(std::span<const PlacedKernel> polytopes, const Vec3& p, double growth, double floor, double& value,
+                 std::span<Vec3> gradient) noexcept {
+  const PlacedKernel* lowest = nullptr;
+  for (const PlacedKernel& polytope : polytopes) {
+    const Vec3f local(p - polytope.position);
+    const double candidate = polytope.kernel->value_below(value + growth, local.x, local.y, local.z) - growth;
+    if (candidate >= value) continue;
+    value = candidate;
+    lowest = &polytope;
+    if (value <= floor) break;
+  }
+  if (lowest && !gradient.empty() && value > floor) {
+    const Vec3f local(p - lowest->position);
+    float unused = 0.0f;
+    Vec3f g;
+    lowest->kernel->values(1, &local.x, &local.y, &local.z, &unused, &g);
+    gradient[0] = g;
+  }
+  value = std::max(value, floor);
+}
+
 }  // namespace
 
 void between_union(std::span<const PlacedKernel> polytopes, const Points& points, std::span<const double> growth,
                    std::span<const double> floors, std::span<double> values, std::span<Vec3> gradients) noexcept {
+  if (points.size() == 1)
+    return between_one(polytopes, points[0], growth.empty() ? 0.0 : growth[0],
+                       floors.empty() ? -std::numeric_limits<double>::infinity() : floors[0], values[0], gradients);
   for (std::size_t first = 0; first < points.size(); first += kChunk) {
     const std::size_t n = std::min(kChunk, points.size() - first);
     between_chunk(polytopes, points.subspan(first, n), growth.empty() ? kNoGrowth.data() : &growth[first],

@@ -46,6 +46,8 @@ Relief::Relief(const Image& image, double period) : width_(image.width), height_
   require(period > 0.0 && std::isfinite(period), "period", "> 0", period);
   require(image.width > 0 && image.height > 0 && image.channels > 0, "relief", "an image with pixels",
           std::to_string(image.width) + " x " + std::to_string(image.height));
+  require((width_ + 4.0) * (height_ + 3.0) < 2147483648.0, "relief", "fewer than 2^31 pixels, the rim included",
+          std::to_string(width_) + " x " + std::to_string(height_));
   std::vector<float> pixels(static_cast<std::size_t>(width_) * height_);
   for (int y = 0; y < height_; ++y)
     for (int x = 0; x < width_; ++x) {

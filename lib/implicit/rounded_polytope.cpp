@@ -104,9 +104,22 @@ class PlanesOverBox {
 }
 
 [[nodiscard]] lanes::PlaneView view(const PackedPlanes& planes, float rounding) {
-  return {planes.nx(), planes.ny(), planes.nz(), planes.d(), static_cast<int>(planes.size()),
-          rounding};
+  return {planes.nx(), planes.ny(), planes.nz(), planes.d(), static_cast<int>(planes.size()), rounding};
 }
+
+/// Where carving takes points.
+struct Moved {
+  lanes::Lane x, y, z;
+
+  Moved(int n, const float* from_x, const float* from_y, const float* from_z, const lanes::Fold& fold,
+        const lanes::Carving& carving) {
+    for (int i = 0; i < n; ++i) {
+      x[i] = from_x[i] + carving.step[i] * fold.gradient[0][i];
+      y[i] = from_y[i] + carving.step[i] * fold.gradient[1][i];
+      z[i] = from_z[i] + carving.step[i] * fold.gradient[2][i];
+    }
+  }
+};
 
 }  // namespace
 
@@ -158,6 +171,21 @@ void PolytopeKernel::values(std::size_t n, const float* x, const float* y, const
   }
 }
 
+double PolytopeKernel::value_below(double ceiling, float x, float y, float z) const noexcept {
+  constexpr double kAbove = std::numeric_limits<double>::infinity();
+  const lanes::PlaneView planes = view(planes_, rounding_);
+  lanes::Fold fold;
+  // The relief only carves, but for rounding, and the caller may have rounded the ceiling.
+  const double top = ceiling + 2.0 * rounding_slack(std::abs(x) + std::abs(y) + std::abs(z));
+  if (!warp_.active()) return lanes::fold_value_below(planes, top, x, y, z, fold) ? fold.value[0] : kAbove;
+  if (!lanes::fold_gradient_below(planes, top, x, y, z, fold)) return kAbove;
+  lanes::Carving carving;
+  lanes::carve(warp_, relief_origin_, 1, &x, &y, &z, fold.gradient, carving);
+  const Moved q(1, &x, &y, &z, fold, carving);
+  lanes::fold_values(planes, 1, q.x, q.y, q.z, fold);
+  return fold.value[0];
+}
+
 void PolytopeKernel::folded(std::size_t n, const float* x, const float* y, const float* z, float* out) const noexcept {
   lanes::Fold fold;
   for (std::size_t first = 0; first < n; first += lanes::kLanes) {
@@ -184,39 +212,22 @@ void PolytopeKernel::warped(int n, const float* x, const float* y, const float* 
   const lanes::PlaneView planes = view(planes_, rounding_);
   lanes::Fold here, there;
   lanes::Carving carving;
-  lanes::Lane qx, qy, qz;
-  if (gradients)
-    lanes::fold_hessians(planes, n, x, y, z, here);
-  else
+  if (!gradients) {
     lanes::fold_gradients(planes, n, x, y, z, here);
-  lanes::carve(warp_, relief_origin_, n, x, y, z, here.gradient, gradients != nullptr, carving);
-  for (int i = 0; i < n; ++i) {
-    qx[i] = x[i] + carving.step[i] * here.gradient[0][i];
-    qy[i] = y[i] + carving.step[i] * here.gradient[1][i];
-    qz[i] = z[i] + carving.step[i] * here.gradient[2][i];
+    lanes::carve(warp_, relief_origin_, n, x, y, z, here.gradient, carving);
+    const Moved q(n, x, y, z, here, carving);
+    lanes::fold_values(planes, n, q.x, q.y, q.z, there);
+    std::copy_n(there.value, n, out);
+    return;
   }
-  if (gradients)
-    lanes::fold_gradients(planes, n, qx, qy, qz, there);
-  else
-    lanes::fold_values(planes, n, qx, qy, qz, there);
+  lanes::fold_hessians(planes, n, x, y, z, here);
+  lanes::carve_with_slopes(warp_, relief_origin_, n, x, y, z, here.gradient, carving);
+  const Moved q(n, x, y, z, here, carving);
+  lanes::fold_gradients(planes, n, q.x, q.y, q.z, there);
   std::copy_n(there.value, n, out);
-  if (!gradients) return;
-  for (int i = 0; i < n; ++i) {
-    // ∇b = G + (u·G) ∇D + D H (I − u uᵀ) G / t, with everything that H multiplies gathered into one vector.
-    const Vec3f far{there.gradient[0][i], there.gradient[1][i], there.gradient[2][i]};
-    const Vec3f unit =
-        Vec3f{here.gradient[0][i], here.gradient[1][i], here.gradient[2][i]} * (1.0f / carving.length[i]);
-    const Vec3f by_g{carving.blend_by_g[0][i], carving.blend_by_g[1][i], carving.blend_by_g[2][i]};
-    const Vec3f by_p{carving.blend_by_p[0][i], carving.blend_by_p[1][i], carving.blend_by_p[2][i]};
-    const float along = glm::dot(unit, far);
-    const Vec3f bent =
-        along * (carving.fade_gain[i] * unit + carving.blend_gain[i] * by_g) + carving.step[i] * (far - along * unit);
-    const float xx = here.hessian[0][i], yy = here.hessian[1][i], zz = here.hessian[2][i];
-    const float yz = here.hessian[3][i], xz = here.hessian[4][i], xy = here.hessian[5][i];
-    gradients[i] = far + along * carving.blend_gain[i] * by_p +
-                   Vec3f{xx * bent.x + xy * bent.y + xz * bent.z, xy * bent.x + yy * bent.y + yz * bent.z,
-                         xz * bent.x + yz * bent.y + zz * bent.z};
-  }
+  lanes::Lane carved[3];
+  lanes::carved_gradients(n, here, there, carving, carved);
+  for (int i = 0; i < n; ++i) gradients[i] = {carved[0][i], carved[1][i], carved[2][i]};
 }
 
 Interval PolytopeKernel::bound(const TurnedBox& local) const noexcept {

@@ -98,7 +98,7 @@ class WarpedField final : public UnaryField {
       }
     }
     lanes::Carving carving;
-    lanes::carve(warp_, Vec3(0.0), static_cast<int>(n), phase[0], phase[1], phase[2], gradient, false, carving);
+    lanes::carve(warp_, Vec3(0.0), static_cast<int>(n), phase[0], phase[1], phase[2], gradient, carving);
     for (int axis = 0; axis < 3; ++axis)
       for (std::size_t i = 0; i < n; ++i) block.p[axis][i] += double{carving.step[i]} * gradient[axis][i];
     field().values(block.points(n), values, {});

@@ -159,8 +159,8 @@ void Assembly::finish(const Field& field, const Task& task) {
   statistics_.voids_removed = parts_.voids_removed();
   statistics_.resolution = options_.resolution;
   statistics_.tolerance = options_.tolerance;
-  statistics_.extent = Vec3(lattice_.cells) * lattice_.step;
-  totals_.origin = lattice_.lo;
+  statistics_.extent = {lattice_.lo, lattice_.node(lattice_.cells)};
+  totals_.origin = lattice_.origin;
   totals_.vertices = parts_.vertices();
   totals_.triangles = parts_.triangles();
   totals_.normals = options_.normals;

@@ -100,7 +100,7 @@ std::vector<std::array<std::uint32_t, 3>> fill_side(const std::vector<Vec3f>& ve
 unsigned sides_of(const Lattice& lattice, const Vec3f& position) noexcept {
   unsigned sides = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    if (position[axis] == 0.0f) sides |= side_bit(axis, 0);
+    if (position[axis] == lattice.local(axis, 0)) sides |= side_bit(axis, 0);
     if (position[axis] == lattice.local(axis, lattice.cells[axis])) sides |= side_bit(axis, 1);
   }
   return sides;

@@ -37,7 +37,7 @@ Lattice Lattice::over(const PolygonizeOptions& options) {
   const Box& region = options.region;
   require(std::isfinite(options.resolution) && options.resolution > 0.0, "resolution", "a number of metres > 0",
           options.resolution);
-  Lattice lattice{.lo = region.lo, .step = Vec3(options.resolution)};
+  Lattice lattice{.lo = region.lo, .step = Vec3(options.resolution), .origin = options.origin.value_or(region.lo)};
   for (int axis = 0; axis < 3; ++axis) {
     const std::string name = std::string("region.") + "xyz"[axis];
     require(std::isfinite(region.lo[axis]), name, "a finite lower end", region.lo[axis]);
@@ -52,6 +52,9 @@ Lattice Lattice::over(const PolygonizeOptions& options) {
       require(false, "resolution", bound, options.resolution);
     }
     lattice.cells[axis] = std::max(1, static_cast<int>(cells));
+    const double from_origin = std::max(region.hi[axis] - lattice.origin[axis], lattice.origin[axis] - region.lo[axis]);
+    require(from_origin / options.resolution <= kMaxCells + kRounding, "origin",
+            "at most 131072 cells from the region's far side", from_origin / options.resolution);
   }
   lattice.coarsest = coarsest_level(options, lattice.cells);
   if (lattice.coarsest == 0) return lattice;

@@ -19,7 +19,7 @@ inline constexpr int kBrickNodes = kBrickCells + 1;
 inline constexpr int kNodes = kBrickNodes * kBrickNodes * kBrickNodes;
 /// From a node to the next along each axis, in a brick's arrays of 9³ values.
 inline constexpr int kStride[3] = {1, kBrickNodes, kBrickNodes * kBrickNodes};
-/// Positions are floats relative to the region's corner: with more cells an axis a vertex could round onto its node.
+/// Positions are floats: with more cells an axis between them and the origin a vertex could round onto its node.
 inline constexpr int kMaxCells = 1 << 17;
 
 /// Nodes at lo + index · step. The one place where indices become metres, so that all who share a node share its bits.
@@ -30,6 +30,7 @@ struct Lattice {
   Vec3 lo{0.0};
   Vec3 step{1.0};
   IVec3 cells{0};    ///< A multiple of 2^coarsest.
+  Vec3 origin{0.0};  ///< What the mesh's positions are relative to.
   int coarsest = 0;  ///< Largest level of a brick; 0: uniform cells.
 
   /// The lattice of a region; @throws ParameterError naming what is wrong with region, resolution or tolerance.
@@ -40,8 +41,10 @@ struct Lattice {
     return {coordinate(0, index.x), coordinate(1, index.y), coordinate(2, index.z)};
   }
   [[nodiscard]] Vec3 node(const IVec3& index) const noexcept { return place(Vec3(index)); }
-  /// Relative to `lo`, as meshes store it.
-  [[nodiscard]] float local(int axis, double index) const noexcept { return static_cast<float>(index * step[axis]); }
+  /// Relative to `origin`, as meshes store it.
+  [[nodiscard]] float local(int axis, double index) const noexcept {
+    return static_cast<float>(index * step[axis] + (lo[axis] - origin[axis]));
+  }
   [[nodiscard]] Vec3f local(const Vec3& index) const noexcept {
     return {local(0, index.x), local(1, index.y), local(2, index.z)};
   }

@@ -1,6 +1,7 @@
 #include "outcrop/terrain/distance_transform.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -10,6 +11,7 @@
 namespace outcrop {
 namespace {
 
+constexpr std::size_t kTogether = 64;  // Columns: a line of the cache or more in each row.
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// result[i] = min over j of (step · (i − j))² + squared[j].
@@ -49,14 +51,21 @@ std::vector<Real> distance_to_marked(int width, int height, const Vec2& cell, co
   std::vector<Real> distances(marked.size(), farthest);
   const auto columns = static_cast<std::size_t>(width), rows = static_cast<std::size_t>(height);
   const Real step = static_cast<Real>(cell.y);
-  // Along a column two sweeps that count steps, from below and from above.
-  parallel_for(columns, [&](std::size_t column) {
+  // Along a column two sweeps that count steps, from below and from above; columns side by side, as they lie in memory.
+  parallel_for((columns + kTogether - 1) / kTogether, [&](std::size_t group) {
+    const std::size_t first = group * kTogether, count = std::min(kTogether, columns - first);
     for (const bool upwards : {true, false}) {
-      Real distance = farthest;
+      std::array<Real, kTogether> distance;
+      distance.fill(farthest);
       for (std::size_t i = 0; i < rows; ++i) {
-        const std::size_t at = (upwards ? i : rows - 1 - i) * columns + column;
-        distance = marked[at] ? Real{0} : std::min(distance + step, farthest);
-        distances[at] = std::min(distances[at], distance);
+        const std::size_t at = (upwards ? i : rows - 1 - i) * columns + first;
+        const char* const mark = &marked[at];
+        Real* const nearest = &distances[at];
+        for (std::size_t k = 0; k < count; ++k) {
+          const Real next = distance[k] + step < farthest ? distance[k] + step : farthest;
+          distance[k] = mark[k] != 0 ? Real{0} : next;
+          nearest[k] = distance[k] < nearest[k] ? distance[k] : nearest[k];
+        }
       }
     }
   });

@@ -18,6 +18,8 @@ namespace {
 
 constexpr std::size_t kChunk = 768;      // Points handled at a time by narrowed nodes: a mesher's brick of 9³.
 constexpr std::size_t kWorthAList = 600; // Boxes with more blocks are not narrowed: their children will be.
+constexpr double kEdgeStep = 0.04;       // Of an edge, at least, on the way along it.
+constexpr double kSplinter = 0.5;        // Of the least inner radius: how deep in its body a block must reach.
 constexpr double kFloatSlack = 2e-5;     // Metres; rounding of a block's float coordinates, some 10 m at 24 bits.
 
 int floor_div(int a, int b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
@@ -248,6 +250,11 @@ Replication::Replication(Rock rock, FieldPtr terrain, ReplicationOptions options
     deepest_ = std::max(deepest_, 0.5 * std::min({size.x, size.y, size.z}));
   }
   deepest_ += options_.swelling + options_.closure;
+  for (std::size_t i = 0; i < shapes_.size(); ++i) {
+    const double volume = rock_.tile.blocks[i].volume;
+    const auto larger = std::ranges::count_if(rock_.tile.blocks, [&](const Block& b) { return b.volume > volume; });
+    shapes_[i].size_rank = static_cast<double>(larger) / static_cast<double>(shapes_.size());
+  }
   if (options_.crack_floor) lipschitz_ += options_.closure_slope * options_.crack_floor->lipschitz();
   bake_lists();
   place_blocks(*terrain, task);
@@ -350,7 +357,9 @@ std::vector<std::uint64_t> Replication::present_blocks(const IVec3& cell, const 
     const Vec3 world_centre = rock_.origin + rock_.world_from_tile * centre;
     const Box world = shapes_[i].world.moved(world_centre);
     if (!world.overlaps(options_.domain) || (options_.visible && !options_.visible(world))) continue;
-    if (options_.criterion) {
+    const Reach reach = reach_into_body(i, world_centre);
+    if (reach == Reach::None) continue;
+    if (options_.criterion || options_.weight) {
       const std::size_t n = block.anchors.size();
       x.resize(n), y.resize(n), z.resize(n), values.resize(n), gradients.resize(n), labels.resize(n), anchors.resize(n);
       for (std::size_t k = 0; k < n; ++k) {
@@ -366,11 +375,59 @@ std::vector<std::uint64_t> Replication::present_blocks(const IVec3& cell, const 
                                             : std::acos(std::clamp(gradients[k].z / length, -1.0, 1.0));
         anchors[k] = {points[k], values[k] / length, slope, labels[k]};
       }
-      if (!present(options_.criterion, anchors)) continue;
+      std::span<const Anchor> counting = anchors;
+      if (reach == Reach::Part) {
+        options_.body->values(points, values, {});
+        std::size_t inside = 0;
+        for (std::size_t k = 0; k < n; ++k)
+          if (values[k] < 0.0) std::swap(anchors[inside++], anchors[k]);
+        if (inside > 0) counting = counting.first(inside);
+      }
+      if (options_.criterion && !present(options_.criterion, counting)) continue;
+      if (options_.weight) {
+        const double weight = mean_weight(options_.weight, counting);
+        if (weight < 1.0 && weight <= drop_threshold(cell, i)) continue;
+      }
     }
     mask[i / 64] |= 1ull << (i % 64);
   }
   return mask;
+}
+
+Replication::Reach Replication::reach_into_body(std::size_t block, const Vec3& world_centre) const {
+  if (!options_.body) return Reach::Whole;
+  const Field& body = *options_.body;
+  const Box bounds = rock_.tile.blocks[block].bounds;
+  const double around = body.lipschitz() * glm::length(glm::max(glm::abs(bounds.lo), glm::abs(bounds.hi)));
+  const double middle = body.value(world_centre);
+  if (middle >= around) return Reach::None;
+  if (middle <= -around) return Reach::Whole;
+  // Along the block's edges, in steps that its body's Lipschitz constant allows: a bed may pass between the corners. A
+  // splinter that the resolution cannot show is left out.
+  const BlockMesh& hull = rock_.tile.blocks[block].hull;
+  double deepest = middle, shallowest = middle;
+  for (const auto& triangle : hull.triangles)
+    for (int corner = 0; corner < 3; ++corner) {
+      if (triangle[corner] > triangle[(corner + 1) % 3]) continue;  // Each edge once, in one of its two triangles.
+      const Vec3 from = world_centre + rock_.world_from_tile * hull.vertices[triangle[corner]];
+      const Vec3 along = rock_.world_from_tile * (hull.vertices[triangle[(corner + 1) % 3]] - hull.vertices[triangle[corner]]);
+      const double step = 1.0 / (body.lipschitz() * std::max(glm::length(along), 1e-9));
+      for (double t = 0.0; t < 1.0 + kEdgeStep;) {
+        const double value = body.value(from + std::min(t, 1.0) * along);
+        deepest = std::min(deepest, value);
+        shallowest = std::max(shallowest, value);
+        t += std::max(std::abs(value) * step, kEdgeStep);
+      }
+    }
+  return deepest > -kSplinter * options_.min_inradius ? Reach::None : shallowest <= 0.0 ? Reach::Whole : Reach::Part;
+}
+
+double Replication::drop_threshold(const IVec3& cell, std::size_t block) const {
+  // Cells are fewer than 2²¹ along each axis.
+  std::uint64_t index = 0;
+  for (int axis = 0; axis < 3; ++axis) index = (index << 21) | (static_cast<std::uint64_t>(cell[axis]) & 0x1FFFFF);
+  Rng rng(options_.seed ^ (static_cast<std::uint64_t>(block) * 0x9E3779B97F4A7C15ull), "presence", index);
+  return outcrop::drop_threshold(shapes_[block].size_rank, rng.uniform());
 }
 
 bool Replication::block_present(const IVec3& cell, std::size_t block) const noexcept {

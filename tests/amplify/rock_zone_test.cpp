@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
+#include <utility>
 
 #include "implicit/field_contract.h"
 #include "outcrop/core/rng.h"
@@ -52,6 +54,80 @@ TEST(RockZone, DoesNotAdvanceAboveThePlateau) {
       // The envelope is sampled: between nodes it may miss the level by what the ground does within a node's width.
       ASSERT_LE(h + zone.advance.at(x, y).h, heights.hi + 1.5);
     }
+}
+
+// Its rasters end where nothing steep is near.
+TEST(RockZone, IsTheSameHoweverMuchGentleGroundLiesAround) {
+  ElevationGrid grid{.width = 256, .height = 256};
+  for (int i = 0; i < 256 * 256; ++i) {
+    const double r = std::hypot(i % 256 - 128, i / 256 - 128);
+    grid.elevations.push_back(static_cast<float>(10.0 * std::clamp((16.0 - r) / 6.0, 0.0, 1.0)));
+  }
+  const Heightfield heightfield(std::move(grid));
+  const auto zone = [&](const Vec2& lo, const Vec2& hi) {
+    return make_rock_zone(heightfield, {.lo = lo, .hi = hi, .slope = kSlope, .reach = 3.0, .spacing = 0.5});
+  };
+  const RockZone wide = zone(heightfield.lo(), heightfield.hi()), close = zone(Vec2(96.0), Vec2(160.0));
+  ASSERT_FALSE(wide.empty);
+  EXPECT_GT(wide.recess.lo().x, 50.0);
+  Rng rng(1, "rock zone test");
+  for (int i = 0; i < 20'000; ++i) {
+    const double x = rng.uniform(0.0, 255.0);
+    const double y = rng.uniform(0.0, 255.0);
+    for (const auto layer : {&RockZone::recess, &RockZone::advance, &RockZone::nearby})
+      ASSERT_NEAR((wide.*layer).at(x, y).h, (close.*layer).at(x, y).h, 1e-5) << x << ' ' << y;
+  }
+}
+
+TEST(RockZone, IsExactlyNothingWhereItsWeightIsNothing) {
+  const Heightfield heightfield = test::terraces();
+  const auto weight = [](const Vec3& p) { return std::clamp((p.y - 20.0) / 15.0, 0.0, 1.0) * (p.z < 21.0); };
+  const RockZone whole = zone_of(heightfield);
+  const RockZone zone = make_rock_zone(heightfield, {.lo = heightfield.lo(), .hi = heightfield.hi(), .slope = kSlope, .reach = 3.0,
+                                                     .spacing = 0.5, .weight_at = weight});
+  Rng rng(2, "rock zone test");
+  int thin = 0;
+  for (int i = 0; i < 50'000; ++i) {
+    const double x = rng.uniform(heightfield.lo().x, heightfield.hi().x);
+    const double y = rng.uniform(heightfield.lo().y, heightfield.hi().y);
+    const double recess = zone.recess.at(x, y).h;
+    if (weight({x, y, heightfield.at(x, y).h}) == 0.0) {
+      ASSERT_EQ(recess, 0.0) << x << ' ' << y;
+      ASSERT_EQ(zone.advance.at(x, y).h, 0.0);
+    }
+    ASSERT_LE(recess, whole.recess.at(x, y).h + 1e-6);
+    if (y < 35.0 && recess > 0.0) ++thin;
+  }
+  EXPECT_GT(thin, 300);
+}
+
+TEST(RockZone, WithdrawsTheGroundBySquareOfALevelWeight) {
+  const Heightfield heightfield = test::terraces();
+  const RockZone whole = zone_of(heightfield);
+  const RockZone half = make_rock_zone(heightfield, {.lo = heightfield.lo(), .hi = heightfield.hi(), .slope = kSlope, .reach = 3.0,
+                                                     .spacing = 0.5, .weight_at = [](const Vec3&) { return 0.5; }});
+  for (double x = 1.0; x < 63.0; x += 0.7)
+    for (double y = 1.0; y < 63.0; y += 0.9)
+      ASSERT_NEAR(half.recess.at(x, y).h, 0.25 * whole.recess.at(x, y).h, 1e-4);
+}
+
+TEST(RockZone, BlocksThinOutTowardsTheRim) {
+  const Heightfield heightfield = test::terraces();
+  const RockZone zone = make_rock_zone(heightfield, {.lo = heightfield.lo(), .hi = heightfield.hi(), .slope = kSlope, .reach = 3.0,
+                                                     .spacing = 0.5, .rim = 1.0});
+  ASSERT_TRUE(zone.weighted);
+  int part = 0, whole = 0;
+  for (double x = 1.0; x < 63.0; x += 0.7)
+    for (double y = 1.0; y < 63.0; y += 0.9) {
+      const double weight = zone.rim.at(x, y).h;
+      part += weight > 0.05 && weight < 0.95;
+      whole += weight >= 0.95;
+      // Next to any place within reach there is ground of the zone.
+      const Vec2 ground = zone.ground.at({x, y});
+      ASSERT_TRUE(zone.recess.at(x, y).h == 0.0 || glm::length(ground - Vec2(x, y)) < 1.0);
+    }
+  EXPECT_GT(part, 200);
+  EXPECT_GT(whole, 100);
 }
 
 TEST(RockZone, WithoutSteepGroundIsEmpty) {

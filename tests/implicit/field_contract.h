@@ -195,6 +195,13 @@ inline void check_between(const Field& field, const Box& box, Rng& rng) {
     ASSERT_EQ(got[i], std::max(floors[i], std::min(ceilings[i], v))) << "between floor and ceiling, point " << i;
     ASSERT_EQ(alone[i], got[i]) << "with and without gradients, point " << i;
     ASSERT_EQ(unbounded[i], std::min(ceilings[i], v)) << "below the ceiling, point " << i;
+    double single = ceilings[i];
+    Vec3 single_gradient = untouched;
+    field.between(points.view().subspan(i, 1), {&floors[i], 1}, {&single, 1}, {&single_gradient, 1});
+    ASSERT_EQ(single, got[i]) << "alone and in a batch, point " << i;
+    if (v > floors[i]) {
+      ASSERT_EQ(single_gradient, gradients[i]) << "gradient alone and in a batch, point " << i;
+    }
     if (v <= floors[i]) continue;
     const Vec3 expected = v < ceilings[i] ? answers.gradients[i] : untouched;
     for (int axis = 0; axis < 3; ++axis)

@@ -33,6 +33,7 @@ struct AmplifyReport {
   std::optional<Heightfield> heightfield;
   StrataFile rock;
   AmplifyOptions options;                  ///< Region, resolution, seed.
+  Vec3 origin{0.0};                        ///< What positions of meshes are relative to, map coordinates and elevation.
   Interpolation interpolation = Interpolation::Smooth;
   bool solid = false;
   int threads = 1;

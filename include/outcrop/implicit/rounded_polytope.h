@@ -94,6 +94,10 @@ class PolytopeKernel {
   void values(std::size_t n, const float* x, const float* y, const float* z, float* out,
               Vec3f* gradients) const noexcept;
 
+  /// b at one point, a batch's bits, or infinity where b is sure to be above `ceiling` by more than rounding: there the
+  /// relief is not asked, nor the rest of the planes.
+  [[nodiscard]] double value_below(double ceiling, float x, float y, float z) const noexcept;
+
   /// out[i] = c(local[i]), the fold before the relief carves: c − ε ≤ b ≤ c + depth() + ε with ε = rounding_slack().
   void folded(std::size_t n, const float* x, const float* y, const float* z, float* out) const noexcept;
   /// The relief's largest depth: the warp's amplitude, 0 without one.

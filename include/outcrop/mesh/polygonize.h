@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <span>
 
 #include "outcrop/core/task.h"
@@ -31,6 +32,9 @@ struct PolygonizeOptions {
   /// World, finite, not empty. Its lattice starts at lo; hi is moved out to whole cells. With a tolerance, hi.z alone
   /// is, and to whole coarsest cells, while cells shrink sideways by up to a sixteenth to end at hi.x and hi.y.
   Box region;
+  /// What the mesh's positions are relative to, world; null: region.lo. At most 2^17 cells away: nearer is more exact.
+  /// Walls are flat and free of intersections in just these floats: a mesh that is moved and rounded again is not.
+  std::optional<Vec3> origin;
   double resolution = 0.25;  ///< Edge of the finest cells in metres, > 0.
   double tolerance = 0.0;    ///< Metres, ≥ 0: how far triangles may lie off the surface where cells are not finest;
                              ///< 0: all are.
@@ -51,7 +55,7 @@ struct PolygonizeStatistics {
   std::size_t evaluations = 0;    ///< Field values computed.
   std::size_t parts_removed = 0;  ///< Floating parts.
   std::size_t voids_removed = 0;
-  Vec3 extent{0.0};  ///< Of what was meshed, from region.lo on: the region moved out to whole cells, metres.
+  Box extent;  ///< What was meshed, world: the region moved out to whole cells.
   double resolution = 0.0, tolerance = 0.0;  ///< As they were, or as the wanted number of triangles made them.
   std::array<std::size_t, kMaxLevels + 1> bricks{};  ///< Of 8³ cells that the surface crosses, by level; 0: finest.
 };
@@ -69,9 +73,8 @@ struct PolygonizeResult {
 /// most; cells beside finer ones are coned from their centres, so there is no crack, skirt or T-junction. Where bricks
 /// are split depends on the field and the lattice alone. Features thinner than a cell show where a node of the lattice
 /// falls into them. Vertices lie on the surface to within a thousandth of their cell where f is smooth, and to within a
-/// fiftieth where it passes that close to a node of the lattice, so that no triangle degenerates. The mesh's origin is
-/// region.lo. The same bytes for any number of threads. Cost: O(cells crossed) evaluations; memory O(triangles). Why it
-/// is so: docs/decisions/mesher.md.
+/// fiftieth where it passes that close to a node of the lattice, so that no triangle degenerates. The same bytes for any
+/// number of threads. Cost: O(cells crossed) evaluations; memory O(triangles). Why it is so: docs/decisions/mesher.md.
 /// @throws ParameterError also when the field's bound or narrow contradict its values; Cancelled.
 [[nodiscard]] PolygonizeResult polygonize(const Field& field, const PolygonizeOptions& options, const Task& task = {});
 

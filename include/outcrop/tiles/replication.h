@@ -29,6 +29,10 @@ struct Rock {
 struct ReplicationOptions {
   Box domain;                   ///< World; blocks are placed when they may matter inside.
   Criterion criterion;          ///< Asked of every block's anchors; null: every block is present.
+  FieldPtr body;                ///< Negative where this rock's material stands: anchors elsewhere do not count, and of
+                                ///< blocks that reach in without any, all count. Null: everywhere.
+  Weight weight;                ///< Drops blocks by size where it is below 1 (drop_threshold); null: 1.
+  Seed seed = 1;                ///< Of the chance in that.
   std::function<double(const Vec3&)> slope;    ///< Steepness at an anchor, radians; null: from the terrain's gradient there.
   std::function<bool(const Box&)> visible;     ///< False: nothing in this box can be seen, no block is placed there; null: true.
   FieldPtr crack_floor;         ///< Below this surface cracks close; null: they stay open.
@@ -78,6 +82,7 @@ class Replication final : public Field {
     Box support;   ///< Relative to the centre; outside it the block's value is at least `cap`.
     Box world;     ///< Of the polytope, world axes, relative to the world position of the centre.
     double inradius;
+    double size_rank = 0.0;  ///< Share of the tile's blocks that are larger.
   };
 
   [[nodiscard]] Vec3 to_tile(const Vec3& world) const noexcept { return tile_from_world_ * (world - rock_.origin); }
@@ -89,6 +94,11 @@ class Replication final : public Field {
   void bake_lists();
   void place_blocks(const Field& terrain, const Task& task);
   [[nodiscard]] std::vector<std::uint64_t> present_blocks(const IVec3& cell, const Field& terrain) const;
+  /// How a block at a world position lies in the body.
+  enum class Reach { None, Part, Whole };
+  [[nodiscard]] Reach reach_into_body(std::size_t block, const Vec3& world_centre) const;
+  /// Of a copy of a block: see outcrop::drop_threshold.
+  [[nodiscard]] double drop_threshold(const IVec3& cell, std::size_t block) const;
   /// One bit a block that is present in the cell; null where none is.
   [[nodiscard]] const std::uint64_t* presence(const IVec3& cell) const noexcept;
   /// Calls visit(block, position) for each present block whose support overlaps the box, once each, until it answers
