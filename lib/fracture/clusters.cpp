@@ -7,6 +7,7 @@
 
 #include "joint_laws.h"
 #include "outcrop/core/error.h"
+#include "outcrop/core/parallel.h"
 #include "region.h"
 #include "sheets.h"
 
@@ -392,27 +393,144 @@ class CellSplitter {
   std::size_t halvings_ = 0;
 };
 
-}  // namespace
+// @param discs  The first `drawn` cut; regions refer to all.
+Clusters split_regions(std::vector<Region> regions, const std::vector<Vec3>& samples, const Graph& graph,
+                       std::vector<Disc> discs, std::size_t drawn, const ClusterOptions& options, Seed seed,
+                       const Task& task) {
+  Clusters clusters;
+  clusters.discs = std::move(discs);
+  CellSplitter cells(samples, graph, clusters.discs, drawn, options, seed);
+  for (std::size_t layer = 0; layer < regions.size(); ++layer) {
+    task.check();
+    const std::size_t first = clusters.list.size();
+    cells.split(std::move(regions[layer]), clusters.list);
+    for (std::size_t i = first; i < clusters.list.size(); ++i) clusters.list[i].layer = static_cast<int>(layer);
+  }
+  clusters.stopped_joints = cells.stopped();
+  clusters.added_joints = cells.halvings();
+  return clusters;
+}
 
-Clusters split_samples(const std::vector<Vec3>& samples, const Graph& graph, const std::vector<Disc>& discs,
-                       const ClusterOptions& options, Seed seed, const Task& task) {
+void check(const std::vector<Vec3>& samples, const Graph& graph, const ClusterOptions& options) {
   require(graph.first.size() == samples.size() + 1, "graph", "one row a sample",
           static_cast<double>(graph.first.size()));
   require(options.columns.empty() || options.domain == Domain::Torus, "columns", "none in a box",
           static_cast<double>(options.columns.size()));
-  Clusters clusters;
-  clusters.discs = discs;
-  RegionSplitter regions(clusters.discs, options, seed);
-  std::vector<Region> parts = regions.run(samples);
-  CellSplitter cells(samples, graph, clusters.discs, discs.size(), options, seed);
-  for (Region& region : parts) {
-    task.check();
-    cells.split(std::move(region), clusters.list);
+}
+
+// What the regions' walls were made of, as far as it is discs.
+std::vector<int> wall_discs(const std::vector<Region>& regions) {
+  std::vector<int> walls;
+  for (const Region& region : regions) walls.insert(walls.end(), region.spent.begin(), region.spent.end());
+  std::sort(walls.begin(), walls.end());
+  walls.erase(std::unique(walls.begin(), walls.end()), walls.end());
+  return walls;
+}
+
+// The discs but for those that drawn walls stand in for: of each wall the nearest of its set.
+std::vector<Disc> without_stand_ins(std::vector<Disc> discs, const std::vector<Disc>& walls, double side) {
+  for (const Disc& wall : walls) {
+    const auto cost = [&](const Disc& other) {
+      const double turn = 1.0 - std::abs(glm::dot(other.normal, wall.normal));
+      const double apart = std::abs(glm::dot(wall.normal, wrapped_difference(wall.centre, other.centre, side)));
+      return (other.set == wall.set && other.age >= 0 ? 0.0 : 4.0 * side) + side * turn + apart;
+    };
+    const auto nearest = std::min_element(discs.begin(), discs.end(),
+                                          [&](const Disc& a, const Disc& b) { return cost(a) < cost(b); });
+    if (nearest != discs.end() && nearest->set == wall.set && nearest->age >= 0) discs.erase(nearest);
   }
-  clusters.stopped_joints = cells.stopped();
-  clusters.added_joints = regions.added_joints() + cells.halvings();
-  clusters.largest_bend = regions.largest_bend();
+  return discs;
+}
+
+// Every region's first two walls are its layer's floor and ceiling, the next two those of its rod, then its ends.
+TileLayout layout_of(const std::vector<Region>& regions, double side) {
+  TileLayout layout{.normal = regions[0].walls[1].plane.normal, .pitch = 0.0, .layers = {}, .slides = true};
+  for (const Region& region : regions) {
+    const auto offset = [&](std::size_t wall) { return region.walls[wall].plane.offset; };
+    const Vec3 period = side * Vec3(region.axis);
+    layout.layers.push_back({.floor = offset(0),
+                             .thickness = -offset(1) - offset(0),
+                             .side_normal = region.walls[3].plane.normal,
+                             .side_offset = offset(2),
+                             .side_pitch = -offset(3) - offset(2),
+                             .axis = glm::normalize(period),
+                             .period = glm::length(period),
+                             .end_normal = region.walls[5].plane.normal,
+                             .end_offset = offset(4)});
+    layout.pitch += layout.layers.back().thickness;
+  }
+  return layout;
+}
+
+// Slabs along x and rods along z, whose columns go through from tile to tile.
+TileLayout layout_of_columns(std::size_t tiers, double side) {
+  TileLayout layout = TileLayout::lattice(side);
+  layout.normal = Vec3(1, 0, 0);
+  layout.layers[0].axis = layout.layers[0].end_normal = Vec3(0, 0, 1);
+  layout.slides = layout.whole_rods = true;
+  layout.level = tiers > 1;
+  return layout;
+}
+
+}  // namespace
+
+Clusters split_samples(const std::vector<Vec3>& samples, const Graph& graph, const std::vector<Disc>& discs,
+                       const ClusterOptions& options, Seed seed, const Task& task) {
+  check(samples, graph, options);
+  std::vector<Disc> all = discs;
+  RegionSplitter splitter(all, options, seed);
+  std::vector<Region> regions = splitter.run(samples);
+  Clusters clusters = split_regions(std::move(regions), samples, graph, std::move(all), discs.size(), options, seed, task);
+  clusters.added_joints += splitter.added_joints();
+  clusters.largest_bend = splitter.largest_bend();
   return clusters;
+}
+
+TileVariants split_variants(const std::vector<Vec3>& samples, const Graph& graph, const Drawn& base,
+                            const std::vector<Drawn>& others, const ClusterOptions& options, const Task& task) {
+  check(samples, graph, options);
+  require(options.domain == Domain::Torus, "variants", "1 in a box", static_cast<double>(others.size() + 1));
+  TileVariants variants;
+  if (!options.columns.empty()) {
+    variants.layout = layout_of_columns(options.columns.size(), options.side);
+    variants.others = parallel_map(
+        others.size(),
+        [&](std::size_t i) { return split_samples(samples, graph, others[i].discs, options, others[i].seed, task); }, task);
+    for (Clusters& clusters : variants.others)
+      for (Cluster& cluster : clusters.list) cluster.layer = 0;
+  } else {
+    std::vector<Disc> discs = base.discs;
+    std::vector<Region> regions = RegionSplitter(discs, options, base.seed).run(samples);
+    variants.layout = layout_of(regions, options.side);
+    const std::vector<int> numbers = wall_discs(regions);
+    std::vector<Disc> walls, drawn_walls;
+    for (const int i : numbers) {
+      walls.push_back(discs[static_cast<std::size_t>(i)]);
+      if (static_cast<std::size_t>(i) < base.discs.size()) drawn_walls.push_back(walls.back());
+    }
+    variants.others = parallel_map(
+        others.size(),
+        [&](std::size_t i) {
+          std::vector<Disc> own = without_stand_ins(others[i].discs, drawn_walls, options.side);
+          const std::size_t drawn = own.size();
+          own.insert(own.end(), walls.begin(), walls.end());
+          // The walls come after the discs that cut.
+          const auto renumber = [&](int& disc) {
+            if (disc >= 0)
+              disc = static_cast<int>(drawn) +
+                     static_cast<int>(std::lower_bound(numbers.begin(), numbers.end(), disc) - numbers.begin());
+          };
+          std::vector<Region> parts = regions;
+          for (Region& region : parts) {
+            for (Region::Wall& wall : region.walls) renumber(wall.joint);
+            for (int& disc : region.spent) renumber(disc);
+          }
+          return split_regions(std::move(parts), samples, graph, std::move(own), drawn, options, others[i].seed, task);
+        },
+        task);
+  }
+  variants.layout.seed = base.seed;
+  return variants;
 }
 
 }  // namespace outcrop

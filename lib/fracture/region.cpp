@@ -86,7 +86,7 @@ std::vector<Region> RegionSplitter::run(const std::vector<Vec3>& samples) {
   }
   std::vector<Region> rods;
   if (!options_.columns.empty()) {
-    rods = column_regions(samples, options_.side, options_.columns, seed_);
+    rods = column_regions(samples, options_.side, options_.columns, options_.boxed_columns, seed_);
   } else {
     whole.periods = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     for (Region& slab : bedded(close(std::move(whole), torus_closing()))) {
@@ -303,6 +303,7 @@ Region RegionSplitter::close(Region region, const Closing& closing) {
     p -= std::floor((glm::dot(normal, p) - offset) / pitch) * options_.side * Vec3(closing.step);
   region.walls.push_back({{-normal, offset}, closing.joint});
   region.walls.push_back({{normal, -offset - pitch}, closing.joint});
+  if (region.periods.size() == 1) region.axis = region.periods[0];
   region.periods = closing.periods;
   if (closing.joint >= 0) region.spent.push_back(closing.joint);
   largest_bend_ = std::max(largest_bend_, closing.bend);

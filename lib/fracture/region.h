@@ -22,6 +22,7 @@ struct Region {
   std::vector<Vec3> positions;
   std::vector<int> spent;         ///< Discs that are walls already.
   std::vector<int> layered_sets;  ///< Persistent sets all of whose joints are walls of layers already.
+  IVec3 axis{0};                  ///< Of a cell: the period of the rod that it was cut from.
 };
 
 /// Cuts the torus until nothing wraps: regions without periods, in a fixed order.
@@ -73,7 +74,9 @@ class RegionSplitter {
 
 /// Columns along z: the Voronoi cells of seeds in the plane, as rods that repeat by one tile along z; several tiers: as
 /// cells between the joints at which they meet.
+/// @param boxed  Seeds do not see each other around the tile: flat joints bound its columns along x and y, so that any two
+///               tiles of columns fit side by side.
 [[nodiscard]] std::vector<Region> column_regions(const std::vector<Vec3>& samples, double side,
-                                                 const std::vector<ColumnTier>& tiers, Seed seed);
+                                                 const std::vector<ColumnTier>& tiers, bool boxed, Seed seed);
 
 }  // namespace outcrop

@@ -42,6 +42,7 @@ void check(const TileOptions& options, double spacing) {
   require(options.aperture >= 0.0 && options.aperture < spacing, "aperture", "≥ 0 and below the spacing",
           options.aperture);
   require(std::isfinite(options.rounding) && options.rounding >= 0.0, "rounding", "≥ 0 and finite", options.rounding);
+  require(options.variants >= 1 && options.variants <= 256, "variants", "in 1 … 256", options.variants);
   require(options.min_block_samples >= 1, "min_block_samples", "≥ 1", options.min_block_samples);
 }
 
@@ -98,6 +99,8 @@ std::vector<SetIntensity> intensities_of(const Clusters& clusters, const std::ve
 
 struct Split {
   Clusters clusters;
+  JointPattern pattern;     ///< That it was drawn from.
+  std::vector<Disc> drawn;
   std::vector<SetIntensity> intensities;
 };
 
@@ -108,10 +111,9 @@ Split split_as_asked(const std::vector<Vec3>& samples, const Graph& graph, Joint
   const std::vector<JointSet> asked = pattern.sets;
   std::vector<double> change(asked.size(), 1.0);
   for (int pass = 1;; ++pass) {
-    const std::vector<Disc> discs = draw_discs(pattern, options.side, seed, options.domain);
-    Split split;
-    split.clusters = split_samples(samples, graph, discs, options, seed, task);
-    split.intensities = intensities_of(split.clusters, discs, asked, options.side);
+    Split split{.pattern = pattern, .drawn = draw_discs(pattern, options.side, seed, options.domain)};
+    split.clusters = split_samples(samples, graph, split.drawn, options, seed, task);
+    split.intensities = intensities_of(split.clusters, split.drawn, asked, options.side);
     bool is_near = true;
     for (std::size_t s = 0; s < asked.size(); ++s) {
       const SetIntensity& got = split.intensities[s];
@@ -162,6 +164,8 @@ Block block_of(const Cluster& cluster, const TileOptions& options) {
 
   Block block;
   const Ball ball = inscribed_ball(shape);
+  block.layer = cluster.layer;
+  block.home = ball.centre;
   block.inradius = ball.radius;
   block.rounding = std::min(options.rounding, 0.5 * ball.radius);
   block.centre = ball.centre - options.side * glm::floor(ball.centre / options.side);
@@ -214,16 +218,37 @@ Tile make_tile(const TileOptions& options, Seed seed, const Task& task) {
       .longest = is_torus ? kLongest * options.side : 2.0 * options.side,
       .columns = pattern.columns,
       .sets = pattern.sets,
+      .boxed_columns = options.variants > 1,
       .domain = options.domain};
-  auto [clusters, intensities] = split_as_asked(samples, graph, pattern, cluster_options, seed, task);
+  auto [clusters, drawn_pattern, drawn, intensities] = split_as_asked(samples, graph, pattern, cluster_options, seed, task);
 
   Tile tile;
   tile.side = options.side;
   tile.type = options.type;
   tile.sets = pattern.sets;
   tile.discs = discs_as_cut(clusters.discs, clusters.list);
-  tile.blocks = parallel_map(
-      clusters.list.size(), [&](std::size_t i) { return block_of(clusters.list[i], options); }, task);
+  const auto blocks_of = [&](const Clusters& of) {
+    return parallel_map(of.list.size(), [&](std::size_t i) { return block_of(of.list[i], options); }, task);
+  };
+  tile.blocks = blocks_of(clusters);
+  tile.layout = TileLayout::lattice(options.side);
+  if (options.variants > 1) {
+    std::vector<Drawn> others;
+    for (int i = 1; i < options.variants; ++i) {
+      const Seed own = Rng(seed, "variants", static_cast<std::uint64_t>(i)).next();
+      others.push_back({draw_discs(drawn_pattern, options.side, own, options.domain), own});
+    }
+    TileVariants variants = split_variants(samples, graph, {std::move(drawn), seed}, others, cluster_options, task);
+    tile.layout = std::move(variants.layout);
+    for (const Clusters& other : variants.others) {
+      tile.others.push_back(blocks_of(other));
+      for (Block& block : tile.others.back()) block.plane_joint.clear();
+    }
+  }
+  for (Block& block : tile.blocks) {
+    if (tile.others.empty()) block.home = block.centre;
+    if (tile.layout.layers.size() == 1) block.layer = 0;
+  }
   const std::vector<PlainHull> plain = parallel_map(
       clusters.list.size(),
       [&](std::size_t i) {

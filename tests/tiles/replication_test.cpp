@@ -51,6 +51,15 @@ TEST(Replication, WithAReliefPassesTheFieldContract) {
   test::check_field_contract(*node, {Vec3(-9.0), Vec3(9.0)}, 4);
 }
 
+TEST(Replication, OfVariantsPassesTheFieldContract) {
+  const Tile tile = make_tile(
+      {.type = BlockType::Tabular, .side = 8.0, .spacing = 0.5, .aperture = 0.04, .rounding = 0.1, .variants = 3}, 7);
+  const auto node = std::make_shared<Replication>(
+      Rock{.tile = tile, .warp = {test::noise_relief(1, 64, 64, 4.0), 0.05}, .world_from_tile = about_z(0.4)}, half_space({}),
+      ReplicationOptions{.domain = kDomain, .criterion = distance_between(-100.0, 3.0)});
+  test::check_field_contract(*node, {Vec3(-9.0), Vec3(9.0)}, 4);
+}
+
 TEST(Replication, RepeatsWithThePeriodOfTheTile) {
   const auto node = replicate({.domain = kDomain});
   Rng rng(1, "replication test");

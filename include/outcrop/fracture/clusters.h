@@ -9,6 +9,7 @@
 #include "outcrop/fracture/joints.h"
 #include "outcrop/fracture/polytope.h"
 #include "outcrop/fracture/samples.h"
+#include "outcrop/fracture/tile_layout.h"
 
 namespace outcrop {
 
@@ -17,6 +18,7 @@ struct Cluster {
   Polytope shape;                      ///< Face.joint: index of the disc, or kAddedJoint, kColumnJoint, ….
   std::vector<std::uint32_t> samples;  ///< In the order of the input.
   std::vector<Vec3> positions;         ///< Of the samples, each moved by whole tiles into `shape`.
+  int layer = 0;                       ///< Of the tile's layout, where variants share one.
 };
 
 struct ClusterOptions {
@@ -29,6 +31,7 @@ struct ClusterOptions {
   double longest = 19.0;       ///< Metres along x, y or z; joints are added to halve longer cells.
   std::vector<ColumnTier> columns{};  ///< See JointPattern; on the torus only.
   std::vector<JointSet> sets{};       ///< What Disc::set refers to: where joints end, and which persistent ones there are.
+  bool boxed_columns = false;         ///< Flat joints bound the tile's columns, so that other tiles fit beside it.
   Domain domain = Domain::Torus;      ///< In a box no joint is turned or added, and its walls are faces (kWall).
 };
 
@@ -60,5 +63,25 @@ struct Clusters {
 [[nodiscard]] Clusters split_samples(const std::vector<Vec3>& samples, const Graph& graph,
                                      const std::vector<Disc>& discs, const ClusterOptions& options, Seed seed,
                                      const Task& task = {});
+
+/// One way to split a tile: what split_samples is given.
+struct Drawn {
+  std::vector<Disc> discs;
+  Seed seed = 0;
+};
+/// Tiles that fit side by side, and how.
+struct TileVariants {
+  TileLayout layout;
+  std::vector<Clusters> others;
+};
+
+/// Splits the torus as often as there are `others`, so that all results and that of `base` have the same regions: the
+/// joints that close the torus are the base's (and stand in for the nearest discs of the same set in the others); what
+/// cuts the inside of a region is each one's own. With columns, which must be boxed, each has its own columns.
+///
+/// Cost: that of split_samples for each.
+[[nodiscard]] TileVariants split_variants(const std::vector<Vec3>& samples, const Graph& graph, const Drawn& base,
+                                          const std::vector<Drawn>& others, const ClusterOptions& options,
+                                          const Task& task = {});
 
 }  // namespace outcrop

@@ -10,6 +10,7 @@
 #include "outcrop/core/rng.h"
 #include "outcrop/core/task.h"
 #include "outcrop/fracture/joints.h"
+#include "outcrop/fracture/tile_layout.h"
 #include "outcrop/implicit/rounded_polytope.h"
 
 namespace outcrop {
@@ -26,6 +27,7 @@ struct TileOptions {
   double aperture = 0.04;         ///< Width of a crack, metres, ≥ 0 and below the spacing.
   double rounding = 0.25;         ///< R of the smooth intersection; limited by half of a block's inradius.
   int min_block_samples = 12;     ///< A joint stops rather than cut off a chip of fewer samples; 1: chips stay.
+  int variants = 1;               ///< 1: the tile repeats. More: that many tiles that fit side by side, up to 256.
   Domain domain = Domain::Torus;  ///< A box is for measuring: its blocks end at walls (kWall) and do not tile.
 };
 
@@ -47,6 +49,8 @@ struct Block {
   double volume = 0.0;        ///< Of the hull, m³.
   std::vector<Vec3> anchors;  ///< Spread through the block, for presence: some 8 to 32 of its samples.
   std::uint32_t sample_count = 0;
+  int layer = 0;   ///< Of the tile's layout.
+  Vec3 home{0.0};  ///< The centre in the base copy of its region: `centre` and whole tiles, where those are its period.
 };
 
 /// The joints of one set, as area in a volume (P32), 1/m.
@@ -73,7 +77,8 @@ struct TileStatistics {
   std::size_t plain_max_planes = 0;
 };
 
-/// Blocks that tile space when repeated with period `side` along the three axes.
+/// Blocks that tile space when repeated with period `side` along the three axes; with variants, when arranged by the
+/// layout.
 struct Tile {
   double side = 20.0;
   BlockType type = BlockType::Equidimensional;
@@ -82,6 +87,9 @@ struct Tile {
   /// has the turned normal; one that was turned in several ways stands once for each. `Disc::set` indexes `sets`.
   std::vector<Disc> discs;
   std::vector<JointSet> sets;  ///< The joint sets as asked for.
+  TileLayout layout;           ///< How copies stand side by side.
+  /// The blocks of the other variants, which may stand in a copy instead of `blocks`; their plane_joint is empty.
+  std::vector<std::vector<Block>> others;
   TileStatistics statistics;
 };
 
