@@ -11,6 +11,7 @@
 #include "outcrop/implicit/combine.h"
 #include "outcrop/terrain/terrain_field.h"
 #include "outcrop/tiles/bedded_rock.h"
+#include "outcrop/tiles/large_fractures.h"
 #include "outcrop/tiles/replication.h"
 #include "rock_zone.h"
 
@@ -25,6 +26,7 @@ constexpr double kCellsInSmallestBlock = 2.0;  // Design decision 10.
 constexpr double kClosureSlope = 0.05;       // Blocks grow by this much a metre below the crack floor.
 constexpr double kCapInBlocks = 0.1;         // How far from blocks their field knows its value.
 constexpr double kFarthestBody = 1e4;        // Metres: presence asks how far away a body is.
+constexpr std::size_t kMostFaults = 64;  // Of the large fractures, that displace strata: the largest.
 constexpr int kCoverageProbes = 2000;
 constexpr double kProbePrecision = 0.01;       // Of a step of the search for the surface.
 
@@ -77,6 +79,24 @@ struct MadeRock {
   double reach = 0.0;       ///< Of the ground behind and before its blocks; 0 when it is not placeable.
   bool placeable = false;   ///< Large enough for the resolution.
 };
+
+/// The criterion where faults set the surface back or forth: an anchor is as far from it as it would be without them.
+Criterion stepped(Criterion criterion, const std::vector<LargeFracture>& fractures) {
+  std::vector<LargeFracture> faults;
+  std::ranges::copy_if(fractures, std::back_inserter(faults), [](const LargeFracture& f) { return f.step != 0.0; });
+  if (faults.empty()) return criterion;
+  return [criterion = std::move(criterion), faults = std::move(faults)](const Anchor& anchor) {
+    Anchor moved = anchor;
+    moved.distance += setback(faults, anchor.position);
+    return criterion(moved);
+  };
+}
+
+/// Gaps narrower than two cells would be scattered holes in a mesh.
+std::vector<LargeFracture> wide_enough(std::vector<LargeFracture> fractures, double resolution) {
+  std::erase_if(fractures, [&](const LargeFracture& f) { return f.width < kCellsInSmallestBlock * resolution; });
+  return fractures;
+}
 
 double mean_volume(const Tile& tile) {
   double sum = 0.0;
@@ -192,7 +212,12 @@ Amplified amplify(const Heightfield& heightfield, const StrataFile& strata_file,
   const double default_side = default_tile_side(heightfield);
   const std::size_t material_count = strata_file.materials.size();
   std::vector<char> used(material_count, 0);
-  const Strata strata = strata_on(strata_file, heightfield);
+  Strata strata = strata_on(strata_file, heightfield);
+  const Interval relief = heightfield.height_bound(lo, hi);
+  const std::vector<LargeFracture> fractures =
+      large_fractures_on(strata_file.large_fractures, heightfield, {Vec3(lo, relief.lo), Vec3(hi, relief.hi)}, options.seed);
+  const std::vector<Fault> faults = faults_of(fractures, kMostFaults);
+  strata.faults.insert(strata.faults.end(), faults.begin(), faults.end());
   if (strata.layers.empty()) used[0] = 1;
   for (const Stratum& layer : strata.layers) used[layer.material] = 1;
   for (const Label material : strata.map.materials()) used[material] = 1;
@@ -276,8 +301,9 @@ Amplified amplify(const Heightfield& heightfield, const StrataFile& strata_file,
         const FieldPtr body = stratum_body(strata, label, limb, kFarthestBody, kFarthestBody);
         ReplicationOptions replication{
             .domain = domain,
-            .criterion = all_of({distance_between(placement.distance_lo * size, placement.distance_hi * size),
-                                 slope_at_least(placement.slope)}),
+            .criterion = stepped(all_of({distance_between(placement.distance_lo * size, placement.distance_hi * size),
+                                         slope_at_least(placement.slope)}),
+                                 fractures),
             .body = body,
             .seed = options.seed + m,
             .slope = slope,
@@ -311,6 +337,14 @@ Amplified amplify(const Heightfield& heightfield, const StrataFile& strata_file,
     }
     if (!placed.empty()) rock_field = union_of(std::move(placed));
     field = rock_on_terrain(filled, zone, rock_field, stratified, ground);
+    const double depth = strata_file.large_fractures.depth;
+    if (depth > 0.0)
+      field = with_gaps(std::move(field), wide_enough(fractures, options.resolution),
+                        {.floor = displaced_terrain(filled, zone.recess, depth), .taper = depth * reach,
+                         .untouched = [zone](const Box& box) {
+                           return zone.recess.bound(Vec2(box.lo), Vec2(box.hi)).hi <= 0.0 &&
+                                  zone.advance.bound(Vec2(box.lo), Vec2(box.hi)).hi <= 0.0;
+                         }});
     top = heights.hi + reach;
   }
   result.terrain = filled;

@@ -85,6 +85,7 @@ RockMaterial read_material(JsonReader& reader, const std::filesystem::path& fold
   const double side = material.tile_side > 0.0 ? material.tile_side : default_side;
   read_lengths(reader, material, side);
   material.min_block_samples = reader.integer("min_block_samples", material.min_block_samples, 1, 10'000);
+  material.variants = reader.integer("variants", material.variants, 1, 64);
   const double joint_side = side > 0.0 ? side : kPatternSide;
   material.joints = read_joints(reader, material.block_type, folder, joint_side, spacing_of(material, joint_side));
   if (const Json* json = reader.child("relief")) read_relief_keys(*json, material, folder, side);
@@ -125,6 +126,7 @@ TileOptions tile_options(const RockMaterial& material, double default_side) {
   options.aperture = material.aperture > 0.0 ? material.aperture : kApertureShare * options.side;
   options.rounding = material.rounding > 0.0 ? material.rounding : kRoundingShare * options.side;
   options.min_block_samples = material.min_block_samples;
+  options.variants = material.variants;
   return options;
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "large_fracture_reader.h"
 #include "material_reader.h"
 #include "outcrop/core/error.h"
 #include "rule_reader.h"
@@ -237,6 +238,7 @@ StrataFile read_strata(const Json& json, const std::filesystem::path& folder, do
   file.materials = read_materials(reader, folder, default_side);
   if (const Json* strata = reader.child("strata")) read_strata_pile(*strata, file, folder);
   if (const Json* placement = reader.child("placement")) file.placement = read_placement(*placement, names_of(file.materials), folder);
+  if (const Json* large = reader.child("large_fractures")) file.large_fractures = read_large_fractures(*large);
   const Vec3f& ground = file.ground_colour;
   const std::vector<double> colour = reader.numbers("ground_colour", {ground.r, ground.g, ground.b}, 3, {0.0, 1.0});
   if (reader.has("ground_colour")) file.ground_colour = Vec3f(colour[0], colour[1], colour[2]);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "outcrop/amplify/large_fracture_rules.h"
 #include "outcrop/amplify/placement_rule.h"
 #include "outcrop/core/json.h"
 #include "outcrop/core/vec.h"
@@ -25,6 +26,7 @@ struct RockMaterial {
   double aperture = 0.0;               ///< Metres; 0: 0.002 · tile_side.
   double rounding = 0.0;               ///< Metres; 0: 0.0125 · tile_side (25 cm at 20 m, as in the paper).
   int min_block_samples = 12;
+  int variants = 8;                    ///< Of the tile, that fit side by side; 1: the tile repeats.
   std::filesystem::path relief;        ///< Empty: the installed relief named "rough".
   double relief_period = 0.0;          ///< Metres; rounded so that it divides the tile's side. 0: tile_side / 5.
   double relief_amplitude = -1.0;      ///< Metres; < 0: 0.006 · tile_side.
@@ -61,6 +63,7 @@ struct StrataFile {
   double base = 0.0;           ///< Elevation of the bottom of the lowest layer: of those that repeat, or of thicknesses.
   std::optional<MapFile> map;
   Placement placement;
+  LargeFractureRules large_fractures;
   NodataPolicy nodata = NodataPolicy::Hole;
   Vec3f ground_colour{0.23f, 0.21f, 0.14f};             ///< Linear albedo where no rock stands.
 };
