@@ -103,41 +103,51 @@ class Gaps final : public Field {
   }
 
   void chunk(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept {
-    const std::size_t n = points.size();
-    // What a gap could be at most: the floor is asked only where that matters.
-    std::array<double, kChunk> floor;
+    // The floor is asked only where the widest gap would matter.
+    std::array<std::uint16_t, kChunk> where;
+    std::array<double, kChunk> x, y, z, floor;
     std::array<Vec3, kChunk> floor_gradients;
-    bool any = false;
-    for (std::size_t i = 0; i < n && !any; ++i)
-      for (const LargeFracture& fracture : fractures_)
-        any = any || 0.5 * fracture.width - std::abs(glm::dot(fracture.normal, points[i] - fracture.centre)) > values[i];
-    if (!any) return;
-    floor_->values(points, {floor.data(), n}, {floor_gradients.data(), gradients.empty() ? 0 : n});
-    for (std::size_t i = 0; i < n; ++i) {
-      if (floor[i] <= values[i]) continue;
-      const double open = std::clamp(floor[i] / taper_, 0.0, 1.0);
+    std::size_t n = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Vec3 p = points[i];
+      const bool matters = std::ranges::any_of(fractures_, [&](const LargeFracture& f) {
+        return 0.5 * f.width - std::abs(glm::dot(f.normal, p - f.centre)) > values[i];
+      });
+      if (!matters) continue;
+      where[n] = static_cast<std::uint16_t>(i);
+      x[n] = p.x, y[n] = p.y, z[n] = p.z;
+      ++n;
+    }
+    if (n == 0) return;
+    const Points asked{{x.data(), n}, {y.data(), n}, {z.data(), n}};
+    floor_->values(asked, {floor.data(), n}, {floor_gradients.data(), gradients.empty() ? 0 : n});
+    for (std::size_t k = 0; k < n; ++k) {
+      double& value = values[where[k]];
+      if (floor[k] <= value) continue;
+      const double open = std::clamp(floor[k] / taper_, 0.0, 1.0);
       const LargeFracture* widest = nullptr;
       Place at{};
       double gap = -std::numeric_limits<double>::infinity();
       for (const LargeFracture& fracture : fractures_) {
-        const Place here = place(fracture, points[i]);
-        const double value = 0.5 * fracture.width * share_of(fracture, here.aside) * open - std::abs(here.height);
-        if (value <= gap) continue;
-        gap = value;
+        const Place here = place(fracture, asked[k]);
+        const double width = 0.5 * fracture.width * share_of(fracture, here.aside) * open - std::abs(here.height);
+        if (width <= gap) continue;
+        gap = width;
         widest = &fracture;
         at = here;
       }
-      const double cut = std::min(gap, floor[i]);
-      if (cut <= values[i]) continue;
-      values[i] = cut;
+      const double cut = std::min(gap, floor[k]);
+      if (cut <= value) continue;
+      value = cut;
       if (gradients.empty()) continue;
-      gradients[i] = floor_gradients[i];
-      if (floor[i] <= gap) continue;
+      Vec3& gradient = gradients[where[k]];
+      gradient = floor_gradients[k];
+      if (floor[k] <= gap) continue;
       const double share = share_of(*widest, at.aside);
       const double half = 0.5 * widest->width;
-      gradients[i] = (at.height < 0.0 ? 1.0 : -1.0) * widest->normal;
-      if (share > -1.0) gradients[i] -= half * open * 2.0 / (widest->radius * widest->radius) * at.aside;
-      if (floor[i] > 0.0 && floor[i] < taper_) gradients[i] += half * share / taper_ * floor_gradients[i];
+      gradient = (at.height < 0.0 ? 1.0 : -1.0) * widest->normal;
+      if (share > -1.0) gradient -= half * open * 2.0 / (widest->radius * widest->radius) * at.aside;
+      if (floor[k] > 0.0 && floor[k] < taper_) gradient += half * share / taper_ * floor_gradients[k];
     }
   }
 
@@ -223,6 +233,8 @@ double setback(std::span<const LargeFracture> fractures, const Vec3& p) noexcept
   double sum = 0.0;
   for (const LargeFracture& f : fractures) {
     if (f.step == 0.0) continue;
+    const Vec3 d = p - f.centre;
+    if (glm::dot(d, d) >= 2.0 * f.radius * f.radius) continue;
     const Place at = place(f, p);
     const double near = 1.0 - std::abs(at.height) / f.radius;
     if (near > 0.0) sum += (at.height < 0.0 ? -0.5 : 0.5) * f.step * std::max(0.0, share_of(f, at.aside)) * near;
