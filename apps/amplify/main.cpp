@@ -5,6 +5,7 @@
 
 #include "cli.h"
 #include "outcrop/amplify/run_amplify.h"
+#include "outcrop/amplify/strata_file.h"
 
 namespace {
 
@@ -29,6 +30,10 @@ int main(int argc, char** argv) {
   app.add_option("HEIGHTMAP", run.heightmap, "Elevations: EXR, TIFF, GeoTIFF, PNG or SRTM .hgt")->required();
   app.add_option("--strata", run.strata, "Description of the rock, strata.json");
   outcrop::cli::add_output_options(app, run.meshes, run.previews, run.width, run.height);
+  app.add_flag_callback(
+         "--list-types", [] { throw CLI::CallForVersion(outcrop::block_types_json(), 0); },
+         "Print the block types as a strata file to copy from, and exit")
+      ->trigger_on_parse();
   app.add_option("--report", run.report, "Report to write, JSON");
 
   app.add_option("--cell-size", run.heights.cell_size, "Metres between samples; default: the file's, else 1");

@@ -10,6 +10,8 @@
 #include "outcrop/core/rng.h"
 #include "outcrop/implicit/combine.h"
 #include "outcrop/terrain/terrain_field.h"
+#include "outcrop/tiles/bedded_rock.h"
+#include "outcrop/tiles/large_fractures.h"
 #include "outcrop/tiles/replication.h"
 #include "rock_zone.h"
 
@@ -22,6 +24,9 @@ constexpr double kRasterNodes = 24e6;        // … but no more than this many i
 constexpr double kPlaceableShare = 0.7;      // Of a tile's volume; below that, its blocks are too small for the resolution.
 constexpr double kCellsInSmallestBlock = 2.0;  // Design decision 10.
 constexpr double kClosureSlope = 0.05;       // Blocks grow by this much a metre below the crack floor.
+constexpr double kCapInBlocks = 0.1;         // How far from blocks their field knows its value.
+constexpr double kFarthestBody = 1e4;        // Metres: presence asks how far away a body is.
+constexpr std::size_t kMostFaults = 64;  // Of the large fractures, that displace strata: the largest.
 constexpr int kCoverageProbes = 2000;
 constexpr double kProbePrecision = 0.01;       // Of a step of the search for the surface.
 
@@ -75,14 +80,31 @@ struct MadeRock {
   bool placeable = false;   ///< Large enough for the resolution.
 };
 
+/// The criterion where faults set the surface back or forth: an anchor is as far from it as it would be without them.
+Criterion stepped(Criterion criterion, const std::vector<LargeFracture>& fractures) {
+  std::vector<LargeFracture> faults;
+  std::ranges::copy_if(fractures, std::back_inserter(faults), [](const LargeFracture& f) { return f.step != 0.0; });
+  if (faults.empty()) return criterion;
+  return [criterion = std::move(criterion), faults = std::move(faults)](const Anchor& anchor) {
+    Anchor moved = anchor;
+    moved.distance += setback(faults, anchor.position);
+    return criterion(moved);
+  };
+}
+
+/// Gaps narrower than two cells would be scattered holes in a mesh.
+std::vector<LargeFracture> wide_enough(std::vector<LargeFracture> fractures, double resolution) {
+  std::erase_if(fractures, [&](const LargeFracture& f) { return f.width < kCellsInSmallestBlock * resolution; });
+  return fractures;
+}
+
 double mean_volume(const Tile& tile) {
   double sum = 0.0;
   for (const Block& block : tile.blocks) sum += block.volume;
   return sum / static_cast<double>(std::max<std::size_t>(tile.blocks.size(), 1));
 }
 
-MadeRock make_rock(const RockMaterial& material, double default_side, const AmplifyOptions& options, Seed seed, const Task& task) {
-  const TileOptions tile = tile_options(material, default_side);
+MadeRock make_rock(const TileOptions& tile, const AmplifyOptions& options, Seed seed, const Task& task) {
   MadeRock rock{.tile = make_tile(tile, seed, task), .aperture = tile.aperture, .rounding = tile.rounding};
   rock.block_size = std::cbrt(mean_volume(rock.tile));
   double all = 0.0, large = 0.0;
@@ -112,11 +134,36 @@ RockReport report_of(const RockMaterial& material, const MadeRock& rock) {
   return report;
 }
 
+/// How much rock the rules of the placement and of the materials allow.
+class Rules {
+ public:
+  Rules(const StrataFile& file, const Heightfield& heightfield, double block_size) {
+    const auto bind = [&](const std::optional<PlacementRule>& rule) {
+      return rule ? rule_value(*rule, heightfield, block_size) : RuleValue();
+    };
+    everywhere_ = bind(file.placement.where);
+    for (const RockMaterial& material : file.materials) of_material_.push_back(bind(material.where));
+  }
+  [[nodiscard]] bool any() const {
+    return everywhere_ || std::ranges::any_of(of_material_, [](const RuleValue& rule) { return rule != nullptr; });
+  }
+  [[nodiscard]] double weight(const RuleSite& site) const {
+    double weight = 1.0;
+    for (const RuleValue* rule : {&everywhere_, &of_material_[site.material]})
+      if (*rule && weight > 0.0) weight = std::min(weight, (*rule)(site));
+    return weight;
+  }
+
+ private:
+  RuleValue everywhere_;
+  std::vector<RuleValue> of_material_;
+};
+
 /// Walks along the input surface's normal, outwards from rock and inwards from air, to the surface of the result, and asks
 /// whose it is. Opposite walls of a gully are not mistaken for it.
-void measure(Amplified& result, const Field& rock, const Heightfield& heightfield, double reach, double slope, Seed seed) {
+void measure(Amplified& result, const Field& rock, const Heightfield& heightfield, const RockZone& zone, double reach, Seed seed) {
   const Vec2 lo(result.region.lo), hi(result.region.hi);
-  const double threshold = std::cos(slope);
+  const double threshold = std::cos(zone.slope);
   int probes = 0, on_blocks = 0;
   double offset = 0.0;
   for (int i = 0; i < kCoverageProbes * 50 && probes < kCoverageProbes; ++i) {
@@ -124,6 +171,7 @@ void measure(Amplified& result, const Field& rock, const Heightfield& heightfiel
     const double x = rng.uniform(lo.x, hi.x);
     const double y = rng.uniform(lo.y, hi.y);
     if (heightfield.has_holes() && heightfield.hole_distance(x, y) > 0.0) continue;
+    if (zone.weighted && zone.weight.at(x, y).h < 1.0) continue;
     const double h = -result.terrain->value({x, y, 0.0});
     const Vec3 p(x, y, h);
     const Vec3 n = glm::normalize(result.terrain->gradient(p));
@@ -164,8 +212,15 @@ Amplified amplify(const Heightfield& heightfield, const StrataFile& strata_file,
   const double default_side = default_tile_side(heightfield);
   const std::size_t material_count = strata_file.materials.size();
   std::vector<char> used(material_count, 0);
-  if (strata_file.strata.layers.empty()) used[0] = 1;
-  for (const Stratum& layer : strata_file.strata.layers) used[layer.material] = 1;
+  Strata strata = strata_on(strata_file, heightfield);
+  const Interval relief = heightfield.height_bound(lo, hi);
+  const std::vector<LargeFracture> fractures =
+      large_fractures_on(strata_file.large_fractures, heightfield, {Vec3(lo, relief.lo), Vec3(hi, relief.hi)}, options.seed);
+  const std::vector<Fault> faults = faults_of(fractures, kMostFaults);
+  strata.faults.insert(strata.faults.end(), faults.begin(), faults.end());
+  if (strata.layers.empty()) used[0] = 1;
+  for (const Stratum& layer : strata.layers) used[layer.material] = 1;
+  for (const Label material : strata.map.materials()) used[material] = 1;
   std::vector<MadeRock> rocks(material_count);
   double reach = 0.0;
   for (std::size_t m = 0; m < material_count; ++m) {
@@ -174,7 +229,7 @@ Amplified amplify(const Heightfield& heightfield, const StrataFile& strata_file,
     result.label_colours.push_back(material.colour);
     if (!used[m]) continue;
     task.check();
-    rocks[m] = make_rock(material, default_side, options, options.seed + m, task);
+    rocks[m] = make_rock(tile_in_place(strata_file, m, default_side), options, options.seed + m, task);
     result.rocks.push_back(report_of(material, rocks[m]));
     result.mean_block_size = std::max(result.mean_block_size, rocks[m].block_size);
     if (!rocks[m].placeable) continue;
@@ -189,12 +244,6 @@ Amplified amplify(const Heightfield& heightfield, const StrataFile& strata_file,
   // Terrain, strata and the zone where rock may stand.
   start = std::chrono::steady_clock::now();
   const auto filled = std::make_shared<TerrainField>(heightfield, NodataPolicy::Fill);
-  Strata strata = strata_file.strata;
-  strata.reference += heightfield.lo();
-  if (strata_file.relative_tops) {
-    const Interval heights = heightfield.height_bound(heightfield.lo(), heightfield.hi());
-    for (Stratum& layer : strata.layers) layer.top = heights.lo + layer.top * heights.width();
-  }
   const auto stratified = std::make_shared<StratifiedTerrain>(filled, strata);
   const Placement& placement = strata_file.placement;
   FieldPtr rock_field;
@@ -202,12 +251,18 @@ Amplified amplify(const Heightfield& heightfield, const StrataFile& strata_file,
   const double margin = 2.0 * reach * std::max(1.0, placement.recess);
   const Vec2 zone_extent = hi - lo + 2.0 * margin;
   const double spacing = std::max(reach / kRasterPerReach, std::sqrt(zone_extent.x * zone_extent.y / kRasterNodes));
+  const double largest_block = reach / kReachInBlocks;
+  const Rules rules(strata_file, heightfield, std::max(largest_block, options.resolution));
+  std::function<double(const Vec3&)> weight_at;
+  if (rules.any())
+    weight_at = [&](const Vec3& p) { return rules.weight({.position = p, .ground = Vec2(p), .distance = {}, .material = strata.material(p)}); };
   if (reach > 0.0)
     zone = make_rock_zone(heightfield,
                           {.lo = lo - margin, .hi = hi + margin, .slope = placement.slope, .reach = reach,
                            .recess = placement.recess,
                            .reach_at = [&](const Vec3& p) { return rocks[strata.material(p)].reach; },
-                           .spacing = spacing, .block_size = reach / kReachInBlocks},
+                           .spacing = spacing, .block_size = largest_block, .weight_at = weight_at,
+                           .rim = placement.rim * largest_block},
                           task);
 
   FieldPtr field = labelled(filled, ground);
@@ -224,46 +279,72 @@ Amplified amplify(const Heightfield& heightfield, const StrataFile& strata_file,
     const auto slope = [&](const Vec3& p) { return zone.nearby.at(p.x, p.y).h > 0.0 ? 0.5 * kPi : 0.0; };
     const Box domain{Vec3(lo - reach, heights.lo - 2.0 * margin), Vec3(hi + reach, heights.hi + margin)};
     std::vector<FieldPtr> placed;
+    const std::vector<Strata::Limb> limbs = strata.limbs();
+    const Mat3 bedding_from_tile = glm::transpose(strata_file.strata.world_from_bedding()) * world_from_tile(strata_file);
     std::size_t report = 0;
     for (std::size_t m = 0; m < material_count; ++m) {
       if (!used[m]) continue;
       RockReport& rock_report = result.rocks[report++];
       if (!rocks[m].placeable) continue;
+      const auto label = static_cast<Label>(m);
       const RockMaterial& material = strata_file.materials[m];
-      const double azimuth = placement.lattice_azimuth;
-      const Mat3 turn(Vec3(std::cos(azimuth), std::sin(azimuth), 0.0), Vec3(-std::sin(azimuth), std::cos(azimuth), 0.0),
-                      Vec3(0.0, 0.0, 1.0));
       const double size = rocks[m].block_size;
       const double side = rocks[m].tile.side;
       const double aperture = rocks[m].aperture;
+      const Warp warp = make_warp(material, side, options.resolution);
       // Cracks narrower than two cells are welded everywhere: a mesh would show them as scattered holes.
       const double swelling =
           0.5 * aperture * std::clamp(2.0 - aperture / options.resolution, 0.0, 1.0) * (1.0 + 1e-3);
       const double crack = placement.recess > 0.0 ? placement.crack_depth / (kReachInBlocks * placement.recess) : 0.0;
-      ReplicationOptions replication{
-          .domain = domain,
-          .criterion = all_of({distance_between(placement.distance_lo * size, placement.distance_hi * size),
-                               slope_at_least(placement.slope), material_is(static_cast<Label>(m))}),
-          .slope = slope,
-          .visible = visible,
-          .crack_floor = displaced_terrain(filled, zone.recess, crack),
-          // Half the crack, and the grooves that rounding leaves along edges (at most R/3 where three faces meet).
-          .closure = 0.5 * aperture + 0.34 * rocks[m].rounding,
-          .closure_slope = kClosureSlope,
-          .swelling = swelling,
-          .min_inradius = 0.5 * kCellsInSmallestBlock * options.resolution,
-          .cap = 0.1 * size};
-      auto node = std::make_shared<Replication>(
-          Rock{.tile = std::move(rocks[m].tile), .warp = make_warp(material, side, options.resolution),
-               .label = static_cast<Label>(m), .world_from_tile = strata.world_from_bedding() * turn,
-               .origin = Vec3(heightfield.lo(), 0.0)},
-          stratified, std::move(replication), task);
-      rock_report.replicated_blocks = node->block_count();
-      rock_report.bytes = node->tile_bytes();
-      placed.push_back(std::move(node));
+      const FieldPtr crack_floor = displaced_terrain(filled, zone.recess, crack);
+      for (const Strata::Limb& limb : limbs) {
+        const FieldPtr body = stratum_body(strata, label, limb, kFarthestBody, kFarthestBody);
+        ReplicationOptions replication{
+            .domain = domain,
+            .criterion = stepped(all_of({distance_between(placement.distance_lo * size, placement.distance_hi * size),
+                                         slope_at_least(placement.slope)}),
+                                 fractures),
+            .body = body,
+            .seed = options.seed + m,
+            .slope = slope,
+            .visible = [&](const Box& box) { return (!body || body->bound(box).lo < 0.0) && visible(box); },
+            .crack_floor = crack_floor,
+            // Half the crack, and the grooves that rounding leaves along edges (at most R/3 where three faces meet).
+            .closure = 0.5 * aperture + 0.34 * rocks[m].rounding,
+            .closure_slope = kClosureSlope,
+            .swelling = swelling,
+            .min_inradius = 0.5 * kCellsInSmallestBlock * options.resolution,
+            .cap = kCapInBlocks * size};
+        if (zone.weighted)
+          replication.weight = [&rules, &zone, label](const Anchor& anchor) {
+            const Vec2 p(anchor.position), on_rock = zone.ground.at(p);
+            const double weight = zone.rim.at(on_rock.x, on_rock.y).h;
+            return weight * rules.weight({anchor.position, on_rock, anchor.distance, label});
+          };
+        auto node = std::make_shared<Replication>(
+            Rock{.tile = &limb == &limbs.back() ? std::move(rocks[m].tile) : rocks[m].tile, .warp = warp, .label = label,
+                 .world_from_tile = limb.world_from_bedding * bedding_from_tile, .origin = Vec3(heightfield.lo(), 0.0)},
+            stratified, std::move(replication), task);
+        rock_report.replicated_blocks += node->block_count();
+        rock_report.bytes += node->tile_bytes();
+        if (node->block_count() == 0) continue;
+        if (body)
+          placed.push_back(bedded_rock(std::move(node), stratum_body(strata, label, limb, 2.0 * size, 2.0 * kCapInBlocks * size),
+                                       {0.5 * aperture - swelling, crack_floor, kClosureSlope}));
+        else
+          placed.push_back(std::move(node));
+      }
     }
-    rock_field = union_of(std::move(placed));
+    if (!placed.empty()) rock_field = union_of(std::move(placed));
     field = rock_on_terrain(filled, zone, rock_field, stratified, ground);
+    const double depth = strata_file.large_fractures.depth;
+    if (depth > 0.0)
+      field = with_gaps(std::move(field), wide_enough(fractures, options.resolution),
+                        {.floor = displaced_terrain(filled, zone.recess, depth), .taper = depth * reach,
+                         .untouched = [zone](const Box& box) {
+                           return zone.recess.bound(Vec2(box.lo), Vec2(box.hi)).hi <= 0.0 &&
+                                  zone.advance.bound(Vec2(box.lo), Vec2(box.hi)).hi <= 0.0;
+                         }});
     top = heights.hi + reach;
   }
   result.terrain = filled;
@@ -279,7 +360,7 @@ Amplified amplify(const Heightfield& heightfield, const StrataFile& strata_file,
   result.region = {Vec3(lo, heights.lo - floor), Vec3(hi, top + 2.0 * options.resolution)};
   if (rock_field) {
     task.begin("measuring the rock", 0);
-    measure(result, *rock_field, heightfield, reach, placement.slope, options.seed);
+    measure(result, *rock_field, heightfield, zone, reach, options.seed);
   }
   result.placement_seconds = seconds_since(start);
   return result;

@@ -5,17 +5,15 @@
 #include <string>
 #include <vector>
 
+#include "joint_reader.h"
 #include "outcrop/core/data_path.h"
 
 namespace outcrop {
 namespace {
 
-constexpr double kPatternSide = 20.0;          // Metres: a JointPattern gives its lengths for a tile of this side.
 constexpr double kFinestSpacing = 1.0 / 100;   // Of the side: some 700 000 samples.
 constexpr double kCoarsestSpacing = 1.0 / 8;   // Of the side: above, a sample would neighbour its own copies.
 constexpr double kWidestCrack = 1.0 / 2;       // Of the spacing: wider, and nothing is left of a thin block.
-constexpr double kWidestDisc = 10.0;           // Of the side: a plane.
-constexpr double kWidestColumn = 1.0 / 5;      // Of the side; the thinnest is a sample wide.
 constexpr double kDeepest = 1.0 / 4;           // Of the side: rounding and reliefs.
 constexpr Bounds kAnyLength{0.0, 1000.0};      // Metres, where the side is not known yet.
 constexpr double kShortestPeriod = 1e-3;       // Metres.
@@ -25,72 +23,8 @@ constexpr double kReliefPeriodShare = 0.2;     // Of the side: about a block.
 constexpr double kReliefAmplitudeShare = 0.006;  // Of the side: 12 cm at 20 m.
 constexpr double kRoundingShare = 0.0125;      // Of the side: 25 cm at 20 m, as in the paper.
 
-/// The upward normal of a plane that falls by `dip` towards `direction`, clockwise from north; x east, y north.
-Vec3 plane_normal(double dip, double direction) {
-  return {std::sin(dip) * std::sin(direction), std::sin(dip) * std::cos(direction), std::cos(dip)};
-}
-
-/// 0, which stands for a default or for none, or a number within bounds.
-double zero_or_number(JsonReader& reader, std::string_view key, const Bounds& bounds) {
-  const double value = reader.number(key, 0.0, {0.0, bounds.hi});
-  return value == 0.0 ? value : reader.number(key, 0.0, bounds);
-}
-
 /// What rounding and reliefs may take away.
 double deepest(double side) { return side > 0.0 ? kDeepest * side : kAnyLength.hi; }
-
-/// Lengths in metres of this tile become the pattern's, those of a 20 m tile.
-JointSet read_joint_set(const Json& json, JointSet set, double side) {
-  JsonReader reader(json);
-  const bool turned = reader.has("dip_deg") || reader.has("dip_direction_deg");
-  const double dip = reader.number("dip_deg", 0.0, {0.0, 90.0});
-  const double direction = reader.number("dip_direction_deg", 0.0, {0.0, 360.0});
-  if (turned) set.normal = plane_normal(radians(dip), radians(direction));
-  set.kappa = reader.number("kappa", set.kappa, kPositive);
-  set.share = reader.number("share", set.share, kPositive);
-  if (const Json* key = reader.child("radius")) {
-    const Bounds bounds{.lo = 0.0, .hi = kWidestDisc * side, .open_lo = true};
-    const std::vector<double> radius = reader.numbers("radius", {}, 2, bounds);
-    if (radius[0] > radius[1]) key->fail("\"radius\": the smallest before the largest");
-    set.radius_lo = radius[0] * kPatternSide / side;
-    set.radius_hi = radius[1] * kPatternSide / side;
-  }
-  reader.finish();
-  return set;
-}
-
-/// The type's pattern with what the file says instead; nothing when it says nothing.
-std::optional<JointPattern> read_joints(JsonReader& reader, BlockType type, double side, double spacing) {
-  bool given = false;
-  for (const char* key : {"joint_sets", "discs", "irregular_share", "centre_spacing", "column_width"})
-    given = reader.has(key) || given;  // Asks for every key, so that the reader knows them all.
-  if (!given) return std::nullopt;
-  JointPattern pattern = joint_pattern(type);
-  if (const Json* sets = reader.child("joint_sets")) {
-    const std::vector<Json>& items = reader.array("joint_sets");
-    if (items.empty()) sets->fail("\"joint_sets\": at least one joint set", "none");
-    std::vector<JointSet> own;
-    for (std::size_t i = 0; i < items.size(); ++i)
-      own.push_back(read_joint_set(items[i], i < pattern.sets.size() ? pattern.sets[i] : JointSet{}, side));
-    pattern.sets = std::move(own);
-  }
-  pattern.discs = reader.integer("discs", pattern.discs, 0, 10'000);
-  pattern.irregular_share = reader.number("irregular_share", pattern.irregular_share, {0.0, 1.0});
-  if (reader.has("centre_spacing"))
-    pattern.centre_spacing = reader.number("centre_spacing", 0.0, kAnyLength) * kPatternSide / side;
-  if (reader.has("column_width")) {
-    const Bounds bounds{spacing, kWidestColumn * side};
-    pattern.column_width = zero_or_number(reader, "column_width", bounds) * kPatternSide / side;
-  }
-  return pattern;
-}
-
-/// Whether a length of the joints stands in metres: then the tile cannot be scaled to suit the terrain.
-bool has_joint_lengths(JsonReader& reader) {
-  if (reader.has("centre_spacing") || reader.has("column_width")) return true;
-  const std::vector<Json>& sets = reader.array("joint_sets");
-  return std::any_of(sets.begin(), sets.end(), [](const Json& set) { return JsonReader(set).has("radius"); });
-}
 
 /// 0 when neither spacing nor side is known yet.
 double spacing_of(const RockMaterial& material, double side) {
@@ -132,6 +66,11 @@ std::string listed(const std::vector<std::string>& names) {
 
 }  // namespace
 
+double zero_or_number(JsonReader& reader, std::string_view key, const Bounds& bounds) {
+  const double value = reader.number(key, 0.0, {0.0, bounds.hi});
+  return value == 0.0 ? value : reader.number(key, 0.0, bounds);
+}
+
 RockMaterial read_material(JsonReader& reader, const std::filesystem::path& folder, double default_side) {
   RockMaterial material;
   material.name = reader.string("name", material.name);
@@ -146,8 +85,9 @@ RockMaterial read_material(JsonReader& reader, const std::filesystem::path& fold
   const double side = material.tile_side > 0.0 ? material.tile_side : default_side;
   read_lengths(reader, material, side);
   material.min_block_samples = reader.integer("min_block_samples", material.min_block_samples, 1, 10'000);
+  material.variants = reader.integer("variants", material.variants, 1, 64);
   const double joint_side = side > 0.0 ? side : kPatternSide;
-  material.joints = read_joints(reader, material.block_type, joint_side, spacing_of(material, joint_side));
+  material.joints = read_joints(reader, material.block_type, folder, joint_side, spacing_of(material, joint_side));
   if (const Json* json = reader.child("relief")) read_relief_keys(*json, material, folder, side);
   const Vec3f& c = material.colour;
   const std::vector<double> colour = reader.numbers("colour", {c.r, c.g, c.b}, 3, {0.0, 1.0});
@@ -186,6 +126,7 @@ TileOptions tile_options(const RockMaterial& material, double default_side) {
   options.aperture = material.aperture > 0.0 ? material.aperture : kApertureShare * options.side;
   options.rounding = material.rounding > 0.0 ? material.rounding : kRoundingShare * options.side;
   options.min_block_samples = material.min_block_samples;
+  options.variants = material.variants;
   return options;
 }
 

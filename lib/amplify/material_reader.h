@@ -17,6 +17,9 @@ inline constexpr Bounds kPositive{.lo = 0.0, .open_lo = true};
 /// they come.
 [[nodiscard]] RockMaterial read_material(JsonReader& reader, const std::filesystem::path& folder, double default_side);
 
+/// 0, which stands for a default or for none, or a number within bounds.
+[[nodiscard]] double zero_or_number(JsonReader& reader, std::string_view key, const Bounds& bounds);
+
 /// The image that a "relief" key means: the name of an installed relief, or a path relative to `folder`.
 [[nodiscard]] std::filesystem::path resolve_relief(const Json& image, const std::filesystem::path& folder);
 

@@ -23,6 +23,9 @@ constexpr float kRimOffset = 1.0f;       // Nodes; what smoothing leaves on grou
 constexpr float kRimSharpness = 2.0f;    // Where a rim bends, the true distance times this bounds the smoothed one.
 constexpr double kProbesPerCell = 2.0;   // Slopes looked at across a cell of the heightfield, at least,
 constexpr int kMostProbes = 4;           // … but no more than this many across a cell of the raster.
+constexpr int kRuleMargin = 2;           // Nodes of the coarse raster that a rule's border loses: bilinear weights are 0 beyond it.
+constexpr double kDownhill = 0.5;        // Tangent of a fall that counts as down to where the ground withdraws.
+constexpr double kAdvanceWeight = 4.0;   // The advance is whole where the weight is a quarter: blocks stand out of thin rock, too.
 constexpr double kCertainlySteep = 1.005;  // Times the threshold's tangent: between two probes the slope may dip.
 constexpr int kTile = 64;                // Nodes, across squares of the raster that are gentle as a whole or looked at.
 
@@ -183,18 +186,20 @@ std::vector<Neighbour> disc(double recess_radius, double advance_radius, double 
   return nodes;
 }
 
-/// How far the ground falls and rises within the reach.
+/// How far the ground falls and rises within the reach, and the least weight of the ground down to where it withdraws.
 struct Envelopes {
-  RasterLayer fall, rise;
+  RasterLayer fall, rise, weight;
 };
 
 template <class Near, class Reach>
 Envelopes make_envelopes(const Heightfield& heightfield, const Raster& raster, double recess, const Near& near,
-                         const Reach& reach_at, const Task& task) {
+                         const Reach& reach_at, const RasterLayer* rule, const Task& task) {
   std::vector<float> ground(raster.count()), fall(raster.count(), 0.0f), rise(raster.count(), 0.0f);
+  std::vector<float> own(rule ? raster.count() : 0), weight(rule ? raster.count() : 0, 1.0f);
   raster.for_each_node([&](std::size_t i, int column, int row) {
     const Vec2 p = raster.node(column, row);
     ground[i] = static_cast<float>(heightfield.at(p.x, p.y).h);
+    if (rule) own[i] = static_cast<float>(rule->at(p.x, p.y).h);
   });
   parallel_for(static_cast<std::size_t>(raster.height), [&](std::size_t r) {
     const int row = static_cast<int>(r);
@@ -213,16 +218,65 @@ Envelopes make_envelopes(const Heightfield& heightfield, const Raster& raster, d
         const float difference = ground[raster.neighbour(column, row, n.dx, n.dy)] - ground[i];
         fallen = std::max(fallen, -n.recess * difference);
         risen = std::max(risen, n.advance * difference);
+        if (!rule || (n.dx == 0 && n.dy == 0)) continue;
+        // Ground beside counts less the more level it lies, so that the least weight does not jump.
+        const double level = kDownhill * raster.spacing * std::hypot(n.dx, n.dy);
+        const float down = n.recess * static_cast<float>(std::clamp(-difference / level, 0.0, 1.0));
+        weight[i] = std::min(weight[i], 1.0f - down * (1.0f - own[raster.neighbour(column, row, n.dx, n.dy)]));
       }
       fall[i] = fallen;
       rise[i] = risen;
     }
     task.advance();
   }, task);
-  return {raster.layer(std::move(fall)), raster.layer(std::move(rise))};
+  return {raster.layer(std::move(fall)), raster.layer(std::move(rise)), rule ? raster.layer(std::move(weight)) : RasterLayer()};
+}
+
+/// The weight on a raster, 0 at nodes within kRuleMargin of one where it is 0: 0 wherever weight_at is.
+///
+/// @param wanted  Which nodes are asked; the rest has 1.
+template <class Wanted>
+RasterLayer make_weight(const Heightfield& heightfield, const Raster& raster, const std::function<double(const Vec3&)>& weight_at,
+                        const Wanted& wanted) {
+  std::vector<float> asked(raster.count(), 1.0f), weight(raster.count());
+  raster.for_each_node([&](std::size_t i, int column, int row) {
+    const Vec2 p = raster.node(column, row);
+    if (wanted(p)) asked[i] = static_cast<float>(std::clamp(weight_at(Vec3(p, heightfield.at(p.x, p.y).h)), 0.0, 1.0));
+  });
+  raster.for_each_node([&](std::size_t i, int column, int row) {
+    weight[i] = asked[i];
+    for (int dy = -kRuleMargin; dy <= kRuleMargin; ++dy)
+      for (int dx = -kRuleMargin; dx <= kRuleMargin; ++dx)
+        if (asked[raster.neighbour(column, row, dx, dy)] <= 0.0f) weight[i] = 0.0f;
+  });
+  return raster.layer(std::move(weight));
+}
+
+/// For each node the nearest one that is marked, within `radius`, else itself.
+NearestGround nearest_ground(const Raster& raster, const std::vector<char>& marked, double radius) {
+  std::vector<Neighbour> neighbours = disc(radius, radius, raster.spacing);
+  std::ranges::stable_sort(neighbours, {}, [](const Neighbour& n) { return n.dx * n.dx + n.dy * n.dy; });
+  const std::vector<float> distance = raster.distance(marked, true, radius + 2.0 * raster.spacing);
+  std::vector<Vec2> nodes(raster.count());
+  raster.for_each_node([&](std::size_t i, int column, int row) {
+    nodes[i] = raster.node(column, row);
+    if (distance[i] > radius) return;
+    for (const Neighbour& n : neighbours)
+      if (marked[raster.neighbour(column, row, n.dx, n.dy)]) {
+        nodes[i] = raster.node(std::clamp(column + n.dx, 0, raster.width - 1), std::clamp(row + n.dy, 0, raster.height - 1));
+        break;
+      }
+  });
+  return {raster.width, raster.height, raster.lo, raster.spacing, std::move(nodes)};
 }
 
 }  // namespace
+
+Vec2 NearestGround::at(const Vec2& p) const noexcept {
+  if (!nodes_) return p;
+  const Vec2 place = glm::clamp(glm::round((p - lo_) / spacing_), Vec2(0.0), Vec2(width_ - 1, height_ - 1));
+  return (*nodes_)[static_cast<std::size_t>(place.y) * width_ + static_cast<std::size_t>(place.x)];
+}
 
 RockZone make_rock_zone(const Heightfield& heightfield, const RockZoneOptions& options, const Task& task) {
   const double largest_radius = options.reach * std::max(1.0, options.recess);
@@ -244,18 +298,47 @@ RockZone make_rock_zone(const Heightfield& heightfield, const RockZoneOptions& o
   if (options.reach_at)
     raster.for_each_node([&](std::size_t i, int column, int row) { steep[i] = steep[i] && reach_at(raster.node(column, row)) > 0.0; });
   close_ledges(raster, steep, ledge);
+  RockZone zone{.weighted = options.weight_at || options.rim > 0.0, .slope = options.slope};
+  RasterLayer rule;
+  if (options.weight_at) {
+    const double about = (kRuleMargin + 3) * coarse.spacing;
+    const std::vector<float> distance = raster.distance(steep, true, about + 2.0 * raster.spacing);
+    rule = make_weight(heightfield, coarse, options.weight_at,
+                       [&](const Vec2& p) { return distance[raster.nearest(p)] <= about; });
+    raster.for_each_node([&](std::size_t i, int column, int row) {
+      const Vec2 p = raster.node(column, row);
+      steep[i] = steep[i] && rule.at(p.x, p.y).h > 0.0;
+    });
+  }
 
   const std::vector<float> to_steep = raster.distance(steep, true, largest_radius + 2.0 * coarse.spacing);
   const auto near_steep = [&](const Vec2& p, double radius) { return to_steep[raster.nearest(p)] <= radius; };
   const Envelopes envelopes =
       make_envelopes(heightfield, coarse, options.recess,
-                     [&](const Vec2& p) { return near_steep(p, 2.0 * coarse.spacing); }, reach_at, task);
+                     [&](const Vec2& p) { return near_steep(p, 2.0 * coarse.spacing); }, reach_at,
+                     options.weight_at ? &rule : nullptr, task);
   std::vector<float> nearby(coarse.count());
   coarse.for_each_node([&](std::size_t i, int column, int row) {
     nearby[i] = near_steep(coarse.node(column, row), largest_radius + coarse.spacing) ? 1.0f : 0.0f;
   });
 
   const std::vector<float> rim = distance_to_rim(raster, steep, largest_radius / kAdvanceGrowth + raster.spacing);
+  const auto rim_weight = [&](std::size_t i) { return options.rim > 0.0 ? std::min(rim[i] / options.rim, 1.0) : 1.0; };
+  const auto weight_of_rule = [&](const Vec2& p) { return options.weight_at ? rule.at(p.x, p.y).h : 1.0; };
+  if (zone.weighted) {
+    std::vector<float> rims(coarse.count()), weights(coarse.count());
+    std::vector<char> marked(coarse.count());
+    coarse.for_each_node([&](std::size_t i, int column, int row) {
+      const Vec2 p = coarse.node(column, row);
+      const std::size_t fine = raster.nearest(p);
+      rims[i] = static_cast<float>(rim_weight(fine));
+      weights[i] = static_cast<float>(weight_of_rule(p) * rims[i]);
+      marked[i] = steep[fine];
+    });
+    zone.ground = nearest_ground(coarse, marked, largest_radius + coarse.spacing);
+    zone.rim = coarse.layer(std::move(rims));
+    zone.weight = coarse.layer(std::move(weights));
+  }
   std::vector<float> recess(raster.count(), 0.0f), advance(raster.count(), 0.0f);
   raster.for_each_node([&](std::size_t i, int column, int row) {
     if (!steep[i]) return;
@@ -268,9 +351,18 @@ RockZone make_rock_zone(const Heightfield& heightfield, const RockZoneOptions& o
                                             slope * std::min<double>(kRecessGrowth * rim[i], options.recess * reach)));
     advance[i] = static_cast<float>(
         std::min(envelopes.rise.at(p.x, p.y).h, std::max(slope, 1.0) * kAdvanceGrowth * rim[i]));
+    if (!zone.weighted) return;
+    const double weight = weight_of_rule(p) * rim_weight(i);
+    // Where few blocks stand the base must not gape as a pit, nor reach down to where none do.
+    const double withdrawn = options.weight_at ? std::min<double>(weight, envelopes.weight.at(p.x, p.y).h) : weight;
+    recess[i] *= static_cast<float>(withdrawn * withdrawn);
+    advance[i] *= static_cast<float>(std::min(kAdvanceWeight * weight, 1.0));
   });
-  const bool empty = std::ranges::none_of(steep, [](char s) { return s != 0; });
-  return {raster.layer(std::move(recess)), raster.layer(std::move(advance)), coarse.layer(std::move(nearby)), options.slope, empty};
+  zone.empty = std::ranges::none_of(steep, [](char s) { return s != 0; });
+  zone.recess = raster.layer(std::move(recess));
+  zone.advance = raster.layer(std::move(advance));
+  zone.nearby = coarse.layer(std::move(nearby));
+  return zone;
 }
 
 }  // namespace outcrop

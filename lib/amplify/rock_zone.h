@@ -2,6 +2,9 @@
 #pragma once
 
 #include <functional>
+#include <memory>
+#include <utility>
+#include <vector>
 
 #include "outcrop/core/task.h"
 #include "outcrop/implicit/field.h"
@@ -18,6 +21,27 @@ struct RockZoneOptions {
   std::function<double(const Vec3&)> reach_at;  ///< At a point of the surface, [0, reach]; 0: left alone. Null: `reach`.
   double spacing = 1.0;   ///< Of the raster that the rim is drawn on, metres, > 0.
   double block_size = 0.0;  ///< Metres; ledges narrower than this count as part of the wall. 0: none do.
+  /// How much rock a point of the surface may have, [0, 1]; 0: left alone. Both envelopes follow it. Null: 1 everywhere.
+  std::function<double(const Vec3&)> weight_at;
+  double rim = 0.0;  ///< Metres from the rim of the steep ground over which the weight grows from 0, ≥ 0.
+};
+
+/// The ground of the zone that is next to a place. Copies are cheap.
+class NearestGround {
+ public:
+  NearestGround() = default;
+  /// @param nodes  One for each node of the layer's raster, rows from the south.
+  NearestGround(int width, int height, const Vec2& lo, double spacing, std::vector<Vec2> nodes)
+      : width_(width), height_(height), lo_(lo), spacing_(spacing), nodes_(std::make_shared<std::vector<Vec2>>(std::move(nodes))) {}
+
+  /// To within a node of the envelopes' raster; p itself where none is within reach.
+  [[nodiscard]] Vec2 at(const Vec2& p) const noexcept;
+
+ private:
+  int width_ = 0, height_ = 0;
+  Vec2 lo_{0.0};
+  double spacing_ = 1.0;
+  std::shared_ptr<const std::vector<Vec2>> nodes_;
 };
 
 /// On steep ground the surface may lie anywhere between h − recess and h + advance.
@@ -30,6 +54,10 @@ struct RockZone {
   RasterLayer recess;   ///< ≥ 0, metres.
   RasterLayer advance;  ///< ≥ 0, metres.
   RasterLayer nearby;   ///< > 0 where steep ground lies within reach.
+  RasterLayer weight;   ///< How much rock the ground may have, [0, 1]; meaningful where `weighted`.
+  RasterLayer rim;      ///< The part of it that depends on the distance to the rim, [0, 1].
+  NearestGround ground;
+  bool weighted = false;  ///< The weight is not 1 everywhere.
   double slope = 0.0;   ///< The threshold, radians.
   bool empty = true;    ///< No steep ground at all.
 };

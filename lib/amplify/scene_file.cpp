@@ -230,7 +230,8 @@ FieldPtr read_tile(JsonReader& reader, const Context& context) {
   const double explode = reader.number("explode", 1.0, {1.0, 100.0});
   const int seed = reader.integer("seed", 1, 0, std::numeric_limits<int>::max());
   const RockMaterial material = read_material(reader, context.folder, TileOptions{}.side);
-  const TileOptions options = tile_options(material, TileOptions{}.side);
+  TileOptions options = tile_options(material, TileOptions{}.side);
+  options.variants = 1;  // One tile is all that is shown.
   const Tile tile = make_tile(options, static_cast<Seed>(seed), context.task);
   Warp warp;
   if (!material.relief.empty() && material.relief_amplitude != 0.0) {

@@ -1,26 +1,64 @@
 #include "outcrop/fracture/clusters.h"
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
 #include <cmath>
 
+#include "joint_laws.h"
 #include "outcrop/core/error.h"
+#include "outcrop/core/parallel.h"
 #include "region.h"
+#include "sheets.h"
 
 namespace outcrop {
 namespace {
 
 constexpr double kTolerance = 1e-10;  // Of the side: vertices nearer to a plane than this are on it.
+constexpr double kPersistent = 0.5 * kPersistentRadius;  // Of the side: discs of larger radius are persistent.
+
+/// Which sets end at which.
+class Terminations {
+ public:
+  explicit Terminations(const std::vector<JointSet>& sets)
+      : count_(sets.size()), ages_(joint_ages(sets)), at_(count_ * (count_ + 1), false) {
+    for (std::size_t s = 0; s < count_; ++s)
+      for (const std::string& name : sets[s].ends_at)
+        for (std::size_t other = 0; other <= count_; ++other)
+          if (name == (other < count_ ? std::string_view(sets[other].name) : kColumns))
+            at_[s * (count_ + 1) + other] = true;
+  }
+
+  [[nodiscard]] bool at(std::size_t set, std::size_t other) const { return at_[set * (count_ + 1) + other]; }
+
+  /// Whether a set ends at what lies along a face.
+  [[nodiscard]] bool at(int set, int joint, const std::vector<Disc>& discs) const {
+    if (set < 0) return false;
+    if (joint == kColumnJoint || joint == kTierJoint) return at(static_cast<std::size_t>(set), count_);
+    if (joint < 0 || discs[static_cast<std::size_t>(joint)].set < 0) return false;
+    return at(static_cast<std::size_t>(set), static_cast<std::size_t>(discs[static_cast<std::size_t>(joint)].set));
+  }
+  [[nodiscard]] const std::vector<int>& ages() const noexcept { return ages_; }
+
+ private:
+  std::size_t count_;
+  std::vector<int> ages_;
+  std::vector<bool> at_;  ///< [set][other]; the last other are columns.
+};
 
 /// Parts one cell after the other by the discs that reach it.
 class CellSplitter {
  public:
-  CellSplitter(const std::vector<Vec3>& samples, const Graph& graph, const std::vector<Disc>& discs,
+  /// @param drawn  How many of the discs were drawn; after them come walls of regions, and the sheets that join them.
+  CellSplitter(const std::vector<Vec3>& samples, const Graph& graph, std::vector<Disc>& discs, std::size_t drawn,
                const ClusterOptions& options, Seed seed)
       : graph_(graph),
         discs_(discs),
+        drawn_(drawn),
         options_(options),
         seed_(seed),
+        ends_(options.sets),
+        sheets_(discs, options, seed),
         owner_(samples.size(), 0),
         position_(samples.size(), Vec3(0.0)),
         height_(samples.size(), 0.0) {}
@@ -42,7 +80,10 @@ class CellSplitter {
         continue;
       }
       const DiscImage image = node.images[node.next++];
-      if (auto parts = parted(node, image); !parts.empty()) {
+      if (image.disc < 0) {
+        add_sheets(node, static_cast<std::size_t>(kFirstSheets - image.disc));
+        stack.push_back(std::move(node));
+      } else if (auto parts = parted(node, image); !parts.empty()) {
         stack.push_back(std::move(parts[1]));
         stack.push_back(std::move(parts[0]));
       } else {
@@ -55,9 +96,11 @@ class CellSplitter {
   [[nodiscard]] std::size_t halvings() const noexcept { return halvings_; }
 
  private:
+  static constexpr int kFirstSheets = -1;
   struct DiscImage {
-    int disc;
+    int disc;  ///< −1 − set: here come the sheets of a persistent set.
     Vec3 centre;
+    bool again = false;  ///< It ended in a larger cell before.
   };
   struct Node {
     Polytope shape;
@@ -65,6 +108,7 @@ class CellSplitter {
     std::vector<DiscImage> images;
     std::size_t next = 0;
     std::uint32_t id = 0;
+    std::vector<std::uint64_t> compartments;  ///< Of each set: which of the pieces that its joints alone would make.
   };
 
   Node root(Region region) {
@@ -85,24 +129,79 @@ class CellSplitter {
     node.shape = box_polytope(Box{middle, middle}.grown(16.0 * options_.side));
     for (const Region::Wall& wall : region.walls)
       node.shape = clipped(node.shape, wall.plane, wall.joint, kTolerance * options_.side);
-    for (const Polytope::Face& face : node.shape.faces) assert(face.joint != -1), (void)face;
+    for (const Polytope::Face& face : node.shape.faces)
+      assert(face.joint != kWall || options_.domain == Domain::Box), (void)face;
+    node.compartments.assign(options_.sets.size(), 0);
+    sheets_.enter(region, node.shape);
     add_images(node, region.spent);
     return node;
   }
 
-  // Every image of a disc whose sphere reaches the cell's bounds, in the order of the discs.
+  // What cuts a cell, in order of age: the sheets of persistent sets, then the discs.
   void add_images(Node& node, const std::vector<int>& spent) const {
+    int oldest = -1;
+    std::size_t i = 0;
+    const std::vector<int>& ages = ends_.ages();
+    const int youngest = ages.empty() ? 0 : *std::max_element(ages.begin(), ages.end());
+    for (int age = oldest; age <= youngest; ++age) {
+      for (std::size_t s = 0; s < ages.size(); ++s)
+        if (ages[s] == age && is_persistent(options_.sets[s]))
+          node.images.push_back({kFirstSheets - static_cast<int>(s), Vec3(0.0)});
+      for (; i < drawn_ && discs_[i].age <= age; ++i) add_images_of(node, static_cast<int>(i), spent);
+    }
+  }
+
+  // Every image of a disc whose sphere reaches the cell's bounds, unless it ends at a wall before.
+  void add_images_of(Node& node, int i, const std::vector<int>& spent) const {
+    if (std::find(spent.begin(), spent.end(), i) != spent.end()) return;
     const Box bounds = node.shape.bounds();
     const double side = options_.side;
-    for (int i = 0; i < static_cast<int>(discs_.size()); ++i) {
-      if (std::find(spent.begin(), spent.end(), i) != spent.end()) continue;
-      const Disc& disc = discs_[static_cast<std::size_t>(i)];
-      const Vec3 lo = glm::ceil((bounds.lo - disc.radius - disc.centre) / side);
-      const Vec3 hi = glm::floor((bounds.hi + disc.radius - disc.centre) / side);
-      for (double z = lo.z; z <= hi.z; ++z)
-        for (double y = lo.y; y <= hi.y; ++y)
-          for (double x = lo.x; x <= hi.x; ++x) node.images.push_back({i, disc.centre + side * Vec3(x, y, z)});
+    const Disc& disc = discs_[static_cast<std::size_t>(i)];
+    Vec3 lo = glm::ceil((bounds.lo - disc.radius - disc.centre) / side);
+    Vec3 hi = glm::floor((bounds.hi + disc.radius - disc.centre) / side);
+    if (options_.domain == Domain::Box) lo = hi = Vec3(0.0);
+    for (double z = lo.z; z <= hi.z; ++z)
+      for (double y = lo.y; y <= hi.y; ++y)
+        for (double x = lo.x; x <= hi.x; ++x) {
+          const Vec3 centre = disc.centre + side * Vec3(x, y, z);
+          const bool is_blocked =
+              disc.ends && std::any_of(node.shape.faces.begin(), node.shape.faces.end(), [&](const Polytope::Face& face) {
+                return ends_.at(disc.set, face.joint, discs_) && blocks(node.shape, face.plane, centre, node.shape);
+              });
+          if (!is_blocked) node.images.push_back({i, centre});
+        }
+  }
+
+  // Whether a joint across a convex piece of rock stands between a disc's centre and a part of the piece: the straight
+  // way from one to the other meets the joint's plane in the piece.
+  [[nodiscard]] bool blocks(const Polytope& piece, const Plane& plane, const Vec3& centre, const Polytope& part) const {
+    const double from = plane.distance(centre);
+    const Vec3 middle = part.middle();
+    const double to = plane.distance(middle);
+    if (from * to >= 0.0) return false;
+    const Vec3 way = centre + from / (from - to) * (middle - centre);
+    const double tolerance = kTolerance * options_.side;
+    return std::all_of(piece.faces.begin(), piece.faces.end(),
+                       [&](const Polytope::Face& face) { return face.plane.distance(way) <= tolerance; });
+  }
+
+  // The sheets of a persistent set that cross the cell come next: those that pass all others first.
+  void add_sheets(Node& node, std::size_t s) {
+    const JointSet& set = options_.sets[s];
+    const Box bounds = node.shape.bounds();
+    const double ending = set.ends_at.empty() ? 0.0 : set.ends_share;
+    std::vector<int> discs;
+    if (ending < 1.0) discs = sheets_.crossing(s, 0, 1.0 - ending, bounds);
+    if (ending > 0.0) {
+      std::uint64_t compartment = 1;
+      for (std::size_t other = 0; other < options_.sets.size(); ++other)
+        if (ends_.at(s, other)) compartment = Rng(compartment, "compartments", node.compartments[other]).next();
+      const std::vector<int> more = sheets_.crossing(s, compartment, ending, bounds);
+      discs.insert(discs.end(), more.begin(), more.end());
     }
+    std::vector<DiscImage> images;
+    for (const int i : discs) images.push_back({i, discs_[static_cast<std::size_t>(i)].centre});
+    node.images.insert(node.images.begin() + static_cast<std::ptrdiff_t>(node.next), images.begin(), images.end());
   }
 
   // Whether the disc may meet the cell: no face has it all outside.
@@ -115,24 +214,47 @@ class CellSplitter {
     return true;
   }
 
-  // The two sides of a joint, or nothing where it does not enter the cell or ends in it.
+  // The two sides of a joint, or nothing where it does not enter the cell or ends in it. A persistent joint that would
+  // cut a chip or a blade off a large cell is tried again in the cells that joints of its age leave: it ends there only.
   std::vector<Node> parted(Node& node, const DiscImage& image) {
+    Sides part = sides_of(node, image);
+    if (!part.is_stopped) return std::move(part.parts);
+    const Disc& disc = discs_[static_cast<std::size_t>(image.disc)];
+    if (image.again || disc.radius <= kPersistent * options_.side) {
+      ++stopped_;
+      return {};
+    }
+    const auto younger = std::find_if(
+        node.images.begin() + static_cast<std::ptrdiff_t>(node.next), node.images.end(), [&](const DiscImage& later) {
+          const int age = later.disc >= 0 ? discs_[static_cast<std::size_t>(later.disc)].age
+                                          : ends_.ages()[static_cast<std::size_t>(kFirstSheets - later.disc)];
+          return age > disc.age;
+        });
+    node.images.insert(younger, {image.disc, image.centre, true});
+    return {};
+  }
+
+  struct Sides {
+    std::vector<Node> parts;  ///< None where the joint does not enter.
+    bool is_stopped = false;  ///< It would, but for what it would leave.
+  };
+  Sides sides_of(const Node& node, const DiscImage& image) {
     const Disc& disc = discs_[static_cast<std::size_t>(image.disc)];
     const Plane plane{disc.normal, -glm::dot(disc.normal, image.centre)};
     const Interval range = node.shape.distances(plane);
-    if (range.lo >= 0.0 || range.hi <= 0.0 || !reaches(node.shape, disc, image.centre)) return {};
+    const double tolerance = kTolerance * options_.side;
+    if (range.lo >= -tolerance || range.hi <= tolerance || !reaches(node.shape, disc, image.centre)) return {};
     if (!enters(node, disc, image.centre, plane)) return {};
 
     std::size_t below = 0;
     for (const std::uint32_t i : node.samples) below += height_[i] < 0.0;
     const auto fewest = static_cast<std::size_t>(options_.min_samples);
-    if (below < fewest || node.samples.size() - below < fewest) return stop();
+    if (below < fewest || node.samples.size() - below < fewest) return {.is_stopped = true};
     std::vector<Node> parts = sides(node, plane, image.disc);
     for (const Node& part : parts)
-      if (part.shape.empty() || is_blade(part.shape) || inscribed_ball(part.shape).radius < options_.min_inradius)
-        return stop();
-    share_out(node, parts);
-    return parts;
+      if (part.shape.empty() || is_blade(part.shape) || is_thin(part.shape)) return {.is_stopped = true};
+    share_out(node, parts, plane, image.disc);
+    return {std::move(parts)};
   }
 
   // A joint across the middle of a cell that is too long, as slender blocks break; nothing for the others.
@@ -160,7 +282,7 @@ class CellSplitter {
     if (below == 0 || below == node.samples.size()) return {};  // a sliver
     ++halvings_;
     std::vector<Node> parts = sides(node, plane, kAddedJoint);
-    share_out(node, parts);
+    share_out(node, parts, plane, kAddedJoint);
     return parts;
   }
 
@@ -171,6 +293,10 @@ class CellSplitter {
     parts[0].shape = clipped(node.shape, plane, joint, tolerance);
     parts[1].shape = clipped(node.shape, {-plane.normal, -plane.offset}, joint, tolerance);
     return parts;
+  }
+
+  [[nodiscard]] bool is_thin(const Polytope& shape) const {
+    return options_.min_inradius > 0.0 && inscribed_ball(shape).radius < options_.min_inradius;
   }
 
   // Whether the newest face meets another at less than the least angle.
@@ -186,15 +312,30 @@ class CellSplitter {
     return false;
   }
 
-  // Samples and coming discs go to the side that they are on.
-  void share_out(const Node& node, std::vector<Node>& parts) {
-    for (Node& part : parts) {
+  // Samples and coming discs go to the side that they are on, discs to both unless they end at this joint.
+  void share_out(const Node& node, std::vector<Node>& parts, const Plane& plane, int joint) {
+    const int set = joint >= 0 ? discs_[static_cast<std::size_t>(joint)].set : -1;
+    for (std::size_t side = 0; side < parts.size(); ++side) {
+      Node& part = parts[side];
       part.id = ++last_id_;
+      part.compartments = node.compartments;
+      if (set >= 0) {
+        std::uint64_t& compartment = part.compartments[static_cast<std::size_t>(set)];
+        compartment = Rng(compartment ^ std::bit_cast<std::uint64_t>(plane.offset), "compartments", 2 * joint + side).next();
+      }
       const Box bounds = part.shape.bounds();
       for (std::size_t k = node.next; k < node.images.size(); ++k) {
         const DiscImage& later = node.images[k];
-        if (bounds.grown(discs_[static_cast<std::size_t>(later.disc)].radius).contains(later.centre))
-          part.images.push_back(later);
+        if (later.disc >= 0) {
+          const Disc& disc = discs_[static_cast<std::size_t>(later.disc)];
+          const bool is_near = disc.radius > options_.side * kPersistent
+                                   ? crosses({disc.normal, -glm::dot(disc.normal, later.centre)}, bounds)
+                                   : bounds.grown(disc.radius).contains(later.centre);
+          if (!is_near) continue;
+          if (disc.ends && ends_.at(disc.set, joint, discs_) && blocks(node.shape, plane, later.centre, part.shape))
+            continue;
+        }
+        part.images.push_back(later);
       }
     }
     for (const std::uint32_t i : node.samples) {
@@ -208,6 +349,7 @@ class CellSplitter {
   // Writes the samples' distances from the plane.
   bool enters(const Node& node, const Disc& disc, const Vec3& centre, const Plane& plane) {
     for (const std::uint32_t i : node.samples) height_[i] = plane.distance(position_[i]);
+    if (disc.radius > kPersistent * options_.side) return true;
     std::size_t through_plane = 0;
     std::size_t through_disc = 0;
     for (const std::uint32_t i : node.samples) {
@@ -228,11 +370,6 @@ class CellSplitter {
            static_cast<double>(through_disc) >= options_.covered_share * static_cast<double>(through_plane);
   }
 
-  std::vector<Node> stop() {
-    ++stopped_;
-    return {};
-  }
-
   Cluster finished(Node node) const {
     Cluster cluster;
     cluster.shape = std::move(node.shape);
@@ -242,9 +379,12 @@ class CellSplitter {
   }
 
   const Graph& graph_;
-  const std::vector<Disc>& discs_;
+  std::vector<Disc>& discs_;
+  std::size_t drawn_;
   const ClusterOptions& options_;
   Seed seed_;
+  Terminations ends_;
+  SheetSource sheets_;
   std::vector<std::uint32_t> owner_;  // Of each sample: the id of its node.
   std::vector<Vec3> position_;        // Of each sample in its cell.
   std::vector<double> height_;        // Of each sample over the plane in question.
@@ -253,23 +393,144 @@ class CellSplitter {
   std::size_t halvings_ = 0;
 };
 
+// @param discs  The first `drawn` cut; regions refer to all.
+Clusters split_regions(std::vector<Region> regions, const std::vector<Vec3>& samples, const Graph& graph,
+                       std::vector<Disc> discs, std::size_t drawn, const ClusterOptions& options, Seed seed,
+                       const Task& task) {
+  Clusters clusters;
+  clusters.discs = std::move(discs);
+  CellSplitter cells(samples, graph, clusters.discs, drawn, options, seed);
+  for (std::size_t layer = 0; layer < regions.size(); ++layer) {
+    task.check();
+    const std::size_t first = clusters.list.size();
+    cells.split(std::move(regions[layer]), clusters.list);
+    for (std::size_t i = first; i < clusters.list.size(); ++i) clusters.list[i].layer = static_cast<int>(layer);
+  }
+  clusters.stopped_joints = cells.stopped();
+  clusters.added_joints = cells.halvings();
+  return clusters;
+}
+
+void check(const std::vector<Vec3>& samples, const Graph& graph, const ClusterOptions& options) {
+  require(graph.first.size() == samples.size() + 1, "graph", "one row a sample",
+          static_cast<double>(graph.first.size()));
+  require(options.columns.empty() || options.domain == Domain::Torus, "columns", "none in a box",
+          static_cast<double>(options.columns.size()));
+}
+
+// What the regions' walls were made of, as far as it is discs.
+std::vector<int> wall_discs(const std::vector<Region>& regions) {
+  std::vector<int> walls;
+  for (const Region& region : regions) walls.insert(walls.end(), region.spent.begin(), region.spent.end());
+  std::sort(walls.begin(), walls.end());
+  walls.erase(std::unique(walls.begin(), walls.end()), walls.end());
+  return walls;
+}
+
+// The discs but for those that drawn walls stand in for: of each wall the nearest of its set.
+std::vector<Disc> without_stand_ins(std::vector<Disc> discs, const std::vector<Disc>& walls, double side) {
+  for (const Disc& wall : walls) {
+    const auto cost = [&](const Disc& other) {
+      const double turn = 1.0 - std::abs(glm::dot(other.normal, wall.normal));
+      const double apart = std::abs(glm::dot(wall.normal, wrapped_difference(wall.centre, other.centre, side)));
+      return (other.set == wall.set && other.age >= 0 ? 0.0 : 4.0 * side) + side * turn + apart;
+    };
+    const auto nearest = std::min_element(discs.begin(), discs.end(),
+                                          [&](const Disc& a, const Disc& b) { return cost(a) < cost(b); });
+    if (nearest != discs.end() && nearest->set == wall.set && nearest->age >= 0) discs.erase(nearest);
+  }
+  return discs;
+}
+
+// Every region's first two walls are its layer's floor and ceiling, the next two those of its rod, then its ends.
+TileLayout layout_of(const std::vector<Region>& regions, double side) {
+  TileLayout layout{.normal = regions[0].walls[1].plane.normal, .pitch = 0.0, .layers = {}, .slides = true};
+  for (const Region& region : regions) {
+    const auto offset = [&](std::size_t wall) { return region.walls[wall].plane.offset; };
+    const Vec3 period = side * Vec3(region.axis);
+    layout.layers.push_back({.floor = offset(0),
+                             .thickness = -offset(1) - offset(0),
+                             .side_normal = region.walls[3].plane.normal,
+                             .side_offset = offset(2),
+                             .side_pitch = -offset(3) - offset(2),
+                             .axis = glm::normalize(period),
+                             .period = glm::length(period),
+                             .end_normal = region.walls[5].plane.normal,
+                             .end_offset = offset(4)});
+    layout.pitch += layout.layers.back().thickness;
+  }
+  return layout;
+}
+
+// Slabs along x and rods along z, whose columns go through from tile to tile.
+TileLayout layout_of_columns(std::size_t tiers, double side) {
+  TileLayout layout = TileLayout::lattice(side);
+  layout.normal = Vec3(1, 0, 0);
+  layout.layers[0].axis = layout.layers[0].end_normal = Vec3(0, 0, 1);
+  layout.slides = layout.whole_rods = true;
+  layout.level = tiers > 1;
+  return layout;
+}
+
 }  // namespace
 
 Clusters split_samples(const std::vector<Vec3>& samples, const Graph& graph, const std::vector<Disc>& discs,
                        const ClusterOptions& options, Seed seed, const Task& task) {
-  require(graph.first.size() == samples.size() + 1, "graph", "one row a sample",
-          static_cast<double>(graph.first.size()));
-  RegionSplitter regions(discs, options, seed);
-  CellSplitter cells(samples, graph, discs, options, seed);
-  Clusters clusters;
-  for (Region& region : regions.run(samples)) {
-    task.check();
-    cells.split(std::move(region), clusters.list);
-  }
-  clusters.stopped_joints = cells.stopped();
-  clusters.added_joints = regions.added_joints() + cells.halvings();
-  clusters.largest_bend = regions.largest_bend();
+  check(samples, graph, options);
+  std::vector<Disc> all = discs;
+  RegionSplitter splitter(all, options, seed);
+  std::vector<Region> regions = splitter.run(samples);
+  Clusters clusters = split_regions(std::move(regions), samples, graph, std::move(all), discs.size(), options, seed, task);
+  clusters.added_joints += splitter.added_joints();
+  clusters.largest_bend = splitter.largest_bend();
   return clusters;
+}
+
+TileVariants split_variants(const std::vector<Vec3>& samples, const Graph& graph, const Drawn& base,
+                            const std::vector<Drawn>& others, const ClusterOptions& options, const Task& task) {
+  check(samples, graph, options);
+  require(options.domain == Domain::Torus, "variants", "1 in a box", static_cast<double>(others.size() + 1));
+  TileVariants variants;
+  if (!options.columns.empty()) {
+    variants.layout = layout_of_columns(options.columns.size(), options.side);
+    variants.others = parallel_map(
+        others.size(),
+        [&](std::size_t i) { return split_samples(samples, graph, others[i].discs, options, others[i].seed, task); }, task);
+    for (Clusters& clusters : variants.others)
+      for (Cluster& cluster : clusters.list) cluster.layer = 0;
+  } else {
+    std::vector<Disc> discs = base.discs;
+    std::vector<Region> regions = RegionSplitter(discs, options, base.seed).run(samples);
+    variants.layout = layout_of(regions, options.side);
+    const std::vector<int> numbers = wall_discs(regions);
+    std::vector<Disc> walls, drawn_walls;
+    for (const int i : numbers) {
+      walls.push_back(discs[static_cast<std::size_t>(i)]);
+      if (static_cast<std::size_t>(i) < base.discs.size()) drawn_walls.push_back(walls.back());
+    }
+    variants.others = parallel_map(
+        others.size(),
+        [&](std::size_t i) {
+          std::vector<Disc> own = without_stand_ins(others[i].discs, drawn_walls, options.side);
+          const std::size_t drawn = own.size();
+          own.insert(own.end(), walls.begin(), walls.end());
+          // The walls come after the discs that cut.
+          const auto renumber = [&](int& disc) {
+            if (disc >= 0)
+              disc = static_cast<int>(drawn) +
+                     static_cast<int>(std::lower_bound(numbers.begin(), numbers.end(), disc) - numbers.begin());
+          };
+          std::vector<Region> parts = regions;
+          for (Region& region : parts) {
+            for (Region::Wall& wall : region.walls) renumber(wall.joint);
+            for (int& disc : region.spent) renumber(disc);
+          }
+          return split_regions(std::move(parts), samples, graph, std::move(own), drawn, options, others[i].seed, task);
+        },
+        task);
+  }
+  variants.layout.seed = base.seed;
+  return variants;
 }
 
 }  // namespace outcrop

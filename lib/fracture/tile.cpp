@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "joint_laws.h"
 #include "outcrop/core/error.h"
 #include "outcrop/core/parallel.h"
 #include "outcrop/fracture/clusters.h"
@@ -15,12 +16,15 @@
 namespace outcrop {
 namespace {
 
-constexpr double kPatternSide = 20.0;   // Metres: the tile for which patterns give their lengths.
 constexpr double kTolerance = 1e-10;    // Of the side: see clusters.cpp.
 constexpr double kLeastInradius = 0.4;  // Of the spacing: a thinner piece would be a blade between two samples.
 constexpr double kLongest = 0.95;       // Of the side: a block as long as the tile would show its period.
 constexpr std::size_t kAnchors = 24;
 constexpr std::size_t kOverlapProbes = 20'000;
+constexpr int kMostPasses = 4;           // Of drawing and splitting, until sets have the intensity that was asked for.
+constexpr double kNearIntensity = 0.02;  // Relative: near enough.
+constexpr double kLeastChange = 0.1;     // Of a set's amount, to make up for growth …
+constexpr double kMostChange = 4.0;      // … and for joints that end.
 
 struct PlainHull {
   double volume = 0.0;
@@ -38,6 +42,7 @@ void check(const TileOptions& options, double spacing) {
   require(options.aperture >= 0.0 && options.aperture < spacing, "aperture", "≥ 0 and below the spacing",
           options.aperture);
   require(std::isfinite(options.rounding) && options.rounding >= 0.0, "rounding", "≥ 0 and finite", options.rounding);
+  require(options.variants >= 1 && options.variants <= 256, "variants", "in 1 … 256", options.variants);
   require(options.min_block_samples >= 1, "min_block_samples", "≥ 1", options.min_block_samples);
 }
 
@@ -66,6 +71,89 @@ std::vector<Vec3> spread(const std::vector<Vec3>& points, std::size_t count) {
   return result;
 }
 
+double area_of(const Polytope& shape, const Polytope::Face& face) {
+  Vec3 twice{0.0};
+  const Vec3& o = shape.vertices[face.loop[0]];
+  for (std::size_t i = 2; i < face.loop.size(); ++i)
+    twice += glm::cross(shape.vertices[face.loop[i - 1]] - o, shape.vertices[face.loop[i]] - o);
+  return 0.5 * glm::length(twice);
+}
+
+std::vector<SetIntensity> intensities_of(const Clusters& clusters, const std::vector<Disc>& drawn,
+                                         const std::vector<JointSet>& sets, double side) {
+  const double volume = side * side * side;
+  std::vector<SetIntensity> result(sets.size());
+  for (std::size_t s = 0; s < sets.size(); ++s)
+    if (is_measured(sets[s]))
+      result[s].asked = (is_persistent(sets[s]) || sets[s].spacing == 0.0 ? 1.0 : sets[s].persistence) / mean_gap(sets[s]);
+  for (const Disc& disc : drawn)
+    if (disc.set >= 0) result[static_cast<std::size_t>(disc.set)].drawn += kPi * disc.radius * disc.radius / volume;
+  for (const Cluster& cluster : clusters.list)
+    for (const Polytope::Face& face : cluster.shape.faces) {
+      const int set = face.joint >= 0 ? clusters.discs[static_cast<std::size_t>(face.joint)].set : -1;
+      // Each joint is the face of a block on either side.
+      if (set >= 0) result[static_cast<std::size_t>(set)].made += 0.5 * area_of(cluster.shape, face) / volume;
+    }
+  return result;
+}
+
+struct Split {
+  Clusters clusters;
+  JointPattern pattern;     ///< That it was drawn from.
+  std::vector<Disc> drawn;
+  std::vector<SetIntensity> intensities;
+};
+
+// A disc grows until it parts its block, and ends where it would leave a chip: so the joints have another area than the
+// discs. What sets with discs are short of or beyond is made up by drawing more or fewer.
+Split split_as_asked(const std::vector<Vec3>& samples, const Graph& graph, JointPattern pattern,
+                     const ClusterOptions& options, Seed seed, const Task& task) {
+  const std::vector<JointSet> asked = pattern.sets;
+  std::vector<double> change(asked.size(), 1.0);
+  for (int pass = 1;; ++pass) {
+    Split split{.pattern = pattern, .drawn = draw_discs(pattern, options.side, seed, options.domain)};
+    split.clusters = split_samples(samples, graph, split.drawn, options, seed, task);
+    split.intensities = intensities_of(split.clusters, split.drawn, asked, options.side);
+    bool is_near = true;
+    for (std::size_t s = 0; s < asked.size(); ++s) {
+      const SetIntensity& got = split.intensities[s];
+      if (is_persistent(asked[s]) || got.asked == 0.0 || got.made == 0.0) continue;
+      is_near = is_near && std::abs(got.made / got.asked - 1.0) < kNearIntensity;
+      change[s] = std::clamp(change[s] * got.asked / got.made, kLeastChange, kMostChange);
+      pattern.sets[s].p32 = change[s] * asked[s].p32;
+      pattern.sets[s].persistence = std::min(4.0, change[s] * asked[s].persistence);
+    }
+    if (is_near || pass == kMostPasses) return split;
+  }
+}
+
+// The discs as they cut: with the normals of the faces along them, and once more for each further normal, to which those
+// faces then refer.
+std::vector<Disc> discs_as_cut(std::vector<Disc> discs, std::vector<Cluster>& clusters) {
+  constexpr double kSameNormal = 1.0 - 1e-12;  // |cos|: some 1.4e-6 radians
+  std::vector<std::vector<int>> versions(discs.size());
+  for (Cluster& cluster : clusters)
+    for (Polytope::Face& face : cluster.shape.faces) {
+      if (face.joint < 0) continue;
+      const auto drawn = static_cast<std::size_t>(face.joint);
+      const Vec3& n = face.plane.normal;
+      const auto same = std::find_if(versions[drawn].begin(), versions[drawn].end(), [&](int v) {
+        return std::abs(glm::dot(discs[static_cast<std::size_t>(v)].normal, n)) > kSameNormal;
+      });
+      if (same != versions[drawn].end()) {
+        face.joint = *same;
+        continue;
+      }
+      const auto version = versions[drawn].empty() ? drawn : discs.size();
+      if (version == discs.size()) discs.push_back(discs[drawn]);
+      const double side = glm::dot(discs[drawn].normal, n) < 0.0 ? -1.0 : 1.0;
+      if (std::abs(glm::dot(discs[version].normal, n)) <= kSameNormal) discs[version].normal = side * n;
+      versions[drawn].push_back(static_cast<int>(version));
+      face.joint = static_cast<int>(version);
+    }
+  return discs;
+}
+
 // The cell with its walls moved back by half the crack, around the centre of its largest ball.
 Block block_of(const Cluster& cluster, const TileOptions& options) {
   const double back = 0.5 * options.aperture;
@@ -76,6 +164,8 @@ Block block_of(const Cluster& cluster, const TileOptions& options) {
 
   Block block;
   const Ball ball = inscribed_ball(shape);
+  block.layer = cluster.layer;
+  block.home = ball.centre;
   block.inradius = ball.radius;
   block.rounding = std::min(options.rounding, 0.5 * ball.radius);
   block.centre = ball.centre - options.side * glm::floor(ball.centre / options.side);
@@ -83,6 +173,7 @@ Block block_of(const Cluster& cluster, const TileOptions& options) {
     if (block.centre[axis] >= options.side) block.centre[axis] = 0.0;  // floor of a tiny negative number
   for (const Polytope::Face& face : shape.faces)
     block.planes.push_back({face.plane.normal, face.plane.distance(ball.centre)});
+  for (const Polytope::Face& face : shape.faces) block.plane_joint.push_back(face.joint);
   for (Vec3& v : shape.vertices) v -= ball.centre;
   block.bounds = shape.bounds();
   block.hull = convex_hull(shape.vertices).value();
@@ -106,36 +197,62 @@ Tile make_tile(const TileOptions& options, Seed seed, const Task& task) {
   const auto start = std::chrono::steady_clock::now();
   const double spacing = options.spacing > 0.0 ? options.spacing : options.side / kSpacingsPerSide;
   check(options, spacing);
-  const bool is_own = !options.pattern.sets.empty() || options.pattern.column_width > 0.0;
-  const JointPattern pattern = is_own ? options.pattern : joint_pattern(options.type);
-  check_pattern(pattern);
+  const bool is_own =
+      !options.pattern.sets.empty() || !options.pattern.columns.empty() || !options.pattern.discs_at.empty();
+  const JointPattern pattern = is_own ? options.pattern : joint_pattern(options.type, options.side);
+  check_pattern(pattern, options.side);
 
   task.begin("fracture", 0);
   const std::vector<Vec3> samples = poisson_samples(options.side, spacing, seed, task);
   const double sight = options.neighbour_factor * spacing;
   const Graph graph = neighbour_graph(samples, options.side, sight);
   task.check();
-  const std::vector<Disc> discs = draw_discs(pattern, options.side, seed);
-  const double scale = options.side / kPatternSide;
+  const bool is_torus = options.domain == Domain::Torus;
   const ClusterOptions cluster_options{
       .side = options.side,
       .sight = sight,
       .min_samples = options.min_block_samples,
-      .min_inradius = std::max({kLeastInradius * spacing, options.aperture, 0.5 * pattern.least_thickness * scale}),
+      .min_inradius = std::max({kLeastInradius * spacing, options.aperture, 0.5 * pattern.least_thickness}),
       .covered_share = pattern.covered_share,
       .least_angle = pattern.least_angle,
-      .longest = kLongest * options.side,
-      .column_width = pattern.column_width * scale};
-  const Clusters clusters = split_samples(samples, graph, discs, cluster_options, seed, task);
+      .longest = is_torus ? kLongest * options.side : 2.0 * options.side,
+      .columns = pattern.columns,
+      .sets = pattern.sets,
+      .boxed_columns = options.variants > 1,
+      .domain = options.domain};
+  auto [clusters, drawn_pattern, drawn, intensities] = split_as_asked(samples, graph, pattern, cluster_options, seed, task);
 
   Tile tile;
   tile.side = options.side;
   tile.type = options.type;
-  tile.blocks = parallel_map(
-      clusters.list.size(), [&](std::size_t i) { return block_of(clusters.list[i], options); }, task);
+  tile.sets = pattern.sets;
+  tile.discs = discs_as_cut(clusters.discs, clusters.list);
+  const auto blocks_of = [&](const Clusters& of) {
+    return parallel_map(of.list.size(), [&](std::size_t i) { return block_of(of.list[i], options); }, task);
+  };
+  tile.blocks = blocks_of(clusters);
+  tile.layout = TileLayout::lattice(options.side);
+  if (options.variants > 1) {
+    std::vector<Drawn> others;
+    for (int i = 1; i < options.variants; ++i) {
+      const Seed own = Rng(seed, "variants", static_cast<std::uint64_t>(i)).next();
+      others.push_back({draw_discs(drawn_pattern, options.side, own, options.domain), own});
+    }
+    TileVariants variants = split_variants(samples, graph, {std::move(drawn), seed}, others, cluster_options, task);
+    tile.layout = std::move(variants.layout);
+    for (const Clusters& other : variants.others) {
+      tile.others.push_back(blocks_of(other));
+      for (Block& block : tile.others.back()) block.plane_joint.clear();
+    }
+  }
+  for (Block& block : tile.blocks) {
+    if (tile.others.empty()) block.home = block.centre;
+    if (tile.layout.layers.size() == 1) block.layer = 0;
+  }
   const std::vector<PlainHull> plain = parallel_map(
       clusters.list.size(),
       [&](std::size_t i) {
+        if (clusters.list[i].positions.empty()) return PlainHull{};  // a column thinner than the samples can tell
         const BlockMesh hull = thick_hull(clusters.list[i].positions, spacing);
         return PlainHull{volume(hull), hull.triangles.size()};
       },
@@ -145,7 +262,8 @@ Tile make_tile(const TileOptions& options, Seed seed, const Task& task) {
   const double cube = options.side * options.side * options.side;
   const auto blocks = static_cast<double>(tile.blocks.size());
   s.samples = samples.size();
-  s.discs = discs.size();
+  s.discs = clusters.discs.size();
+  s.intensities = std::move(intensities);
   s.clusters = clusters.list.size();
   s.merged_chips = clusters.stopped_joints;
   s.added_joints = clusters.added_joints;

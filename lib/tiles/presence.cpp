@@ -4,6 +4,11 @@
 #include <utility>
 
 namespace outcrop {
+namespace {
+
+constexpr double kSizeShare = 0.6;  // Of the order in which blocks are dropped; the rest is chance. At least a half.
+
+}  // namespace
 
 Criterion slope_at_least(double angle) {
   return [angle](const Anchor& anchor) { return anchor.slope >= angle; };
@@ -38,6 +43,21 @@ Criterion none_of(std::vector<Criterion> criteria) {
 bool present(const Criterion& criterion, std::span<const Anchor> anchors) {
   const auto agreeing = std::ranges::count_if(anchors, criterion);
   return !anchors.empty() && 2 * static_cast<std::size_t>(agreeing) >= anchors.size();
+}
+
+double mean_weight(const Weight& weight, std::span<const Anchor> anchors) {
+  double sum = 0.0;
+  for (const Anchor& anchor : anchors) sum += weight(anchor);
+  return anchors.empty() ? 0.0 : sum / static_cast<double>(anchors.size());
+}
+
+double drop_threshold(double size_rank, double chance) noexcept {
+  // A sum a X + b Y of two uniform numbers, a ≥ b, a + b = 1, is uniform again after its own distribution function.
+  const double a = kSizeShare, b = 1.0 - kSizeShare;
+  const double sum = a * size_rank + b * chance;
+  if (sum < b) return sum * sum / (2.0 * a * b);
+  if (sum <= a) return (sum - 0.5 * b) / a;
+  return 1.0 - (1.0 - sum) * (1.0 - sum) / (2.0 * a * b);
 }
 
 }  // namespace outcrop

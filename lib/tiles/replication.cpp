@@ -18,11 +18,9 @@ namespace {
 
 constexpr std::size_t kChunk = 768;      // Points handled at a time by narrowed nodes: a mesher's brick of 9³.
 constexpr std::size_t kWorthAList = 600; // Boxes with more blocks are not narrowed: their children will be.
+constexpr double kEdgeStep = 0.04;       // Of an edge, at least, on the way along it.
+constexpr double kSplinter = 0.5;        // Of the least inner radius: how deep in its body a block must reach.
 constexpr double kFloatSlack = 2e-5;     // Metres; rounding of a block's float coordinates, some 10 m at 24 bits.
-
-int floor_div(int a, int b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
-
-IVec3 cell_of(const Vec3& p, double side) { return IVec3(glm::floor(p / side)); }
 
 /// The box that holds a box after a rotation.
 Box rotated(const Mat3& rotation, const Box& box) {
@@ -225,32 +223,47 @@ Replication::Replication(Rock rock, FieldPtr terrain, ReplicationOptions options
   if (options_.closure == 0.0) options_.crack_floor = nullptr;
 
   const double reach = options_.cap + options_.swelling + options_.closure + kFloatSlack;
-  for (const Block& block : rock_.tile.blocks) {
-    PolytopeKernel kernel(block.planes, block.rounding, rock_.warp, block.centre);
-    lipschitz_ = std::max(lipschitz_, kernel.lipschitz());
-    // The centre's smallest plane distance, not the reported ball: the proof of support_box needs exactly that.
-    double inner = std::numeric_limits<double>::infinity();
-    for (const Plane& plane : block.planes) inner = std::min(inner, -plane.offset);
-    shapes_.push_back({.kernel = std::move(kernel),
-                       .centre = block.centre,
-                       .support = support_box(block.bounds, std::max(inner, 1e-3), reach),
-                       .world = rotated(rock_.world_from_tile, block.bounds),
-                       .inradius = block.inradius});
-  }
-  // A block is 1-Lipschitz before its warp, which only adds: no value lies deeper than half of its smallest extent.
-  for (const Shape& shape : shapes_) {
-    supports_ = hull(supports_, shape.support);
-    supports_in_tile_.push_back(shape.support.moved(shape.centre));
-  }
-  for (const Block& block : rock_.tile.blocks) {
-    const Vec3 size = block.bounds.size();
-    half_block_ += block.bounds.half_diagonal() / static_cast<double>(rock_.tile.blocks.size());
-    deepest_ = std::max(deepest_, 0.5 * std::min({size.x, size.y, size.z}));
-  }
-  deepest_ += options_.swelling + options_.closure;
+  arrangement_ = Arrangement(rock_.tile, reach, to_tile(options_.domain));
+  place_blocks(*terrain, reach, task);
   if (options_.crack_floor) lipschitz_ += options_.closure_slope * options_.crack_floor->lipschitz();
-  bake_lists();
-  place_blocks(*terrain, task);
+}
+
+std::vector<Block> Replication::make_shapes(double reach, const std::vector<char>& used) {
+  std::vector<Block> blocks;
+  std::vector<double> volumes;
+  for (const Block& block : rock_.tile.blocks) volumes.push_back(block.volume);
+  std::ranges::sort(volumes);
+  lists_.resize(used.size());
+  for (std::size_t l = 0; l < used.size(); ++l) {
+    List& list = lists_[l];
+    list.first = static_cast<std::uint32_t>(shapes_.size());
+    if (!used[l]) continue;
+    for (Block& block : arrangement_.blocks(rock_.tile, l)) {
+      PolytopeKernel kernel(block.planes, block.rounding, rock_.warp, block.centre);
+      lipschitz_ = std::max(lipschitz_, kernel.lipschitz());
+      // The centre's smallest plane distance, not the reported ball: the proof of support_box needs exactly that.
+      double inner = std::numeric_limits<double>::infinity();
+      for (const Plane& plane : block.planes) inner = std::min(inner, -plane.offset);
+      shapes_.push_back({.kernel = std::move(kernel),
+                         .centre = block.home,
+                         .support = support_box(block.bounds, std::max(inner, 1e-3), reach),
+                         .world = rotated(rock_.world_from_tile, block.bounds),
+                         .inradius = block.inradius,
+                         .size_rank = static_cast<double>(volumes.end() - std::ranges::upper_bound(volumes, block.volume)) /
+                                      static_cast<double>(volumes.size())});
+      supports_in_tile_.push_back(shapes_.back().support.moved(block.home));
+      list.support = hull(list.support, supports_in_tile_.back());
+      const Vec3 size = block.bounds.size();
+      half_block_ += block.bounds.half_diagonal();
+      // A block is 1-Lipschitz before its warp, which only adds: no value lies deeper than half of its smallest extent.
+      deepest_ = std::max(deepest_, 0.5 * std::min({size.x, size.y, size.z}));
+      blocks.push_back(std::move(block));
+    }
+    list.count = static_cast<std::uint32_t>(shapes_.size()) - list.first;
+  }
+  half_block_ /= static_cast<double>(std::max<std::size_t>(shapes_.size(), 1));
+  deepest_ += options_.swelling + options_.closure;
+  return blocks;
 }
 
 Box Replication::to_tile(const Box& world) const noexcept {
@@ -263,94 +276,62 @@ TurnedBox Replication::turned(const Box& world) const noexcept {
           {tile_from_world_[0] * half.x, tile_from_world_[1] * half.y, tile_from_world_[2] * half.z}};
 }
 
-void Replication::bake_lists() {
-  voxels_ = std::clamp(static_cast<int>(std::lround(3.0 * std::cbrt(static_cast<double>(shapes_.size())))), 2, 32);
-  const double voxel = rock_.tile.side / voxels_;
-  std::vector<std::vector<Entry>> lists(static_cast<std::size_t>(voxels_) * voxels_ * voxels_);
-  for (std::size_t i = 0; i < shapes_.size(); ++i) {
-    const Box box = shapes_[i].support.moved(shapes_[i].centre);
-    const IVec3 lo(glm::floor(box.lo / voxel));
-    const IVec3 hi(glm::floor(box.hi / voxel));
-    for (int z = lo.z; z <= hi.z; ++z)
-      for (int y = lo.y; y <= hi.y; ++y)
-        for (int x = lo.x; x <= hi.x; ++x) {
-          // Voxel (x, y, z) of the owner's frame lies in cell owner + q; seen from there the owner is at −q.
-          const IVec3 q(floor_div(x, voxels_), floor_div(y, voxels_), floor_div(z, voxels_));
-          const IVec3 v = IVec3(x, y, z) - q * voxels_;
-          lists[(static_cast<std::size_t>(v.z) * voxels_ + v.y) * voxels_ + v.x].push_back(
-              {static_cast<std::uint32_t>(i), static_cast<std::int8_t>(-q.x), static_cast<std::int8_t>(-q.y),
-               static_cast<std::int8_t>(-q.z)});
-        }
-  }
-  first_.assign(1, 0);
-  for (const std::vector<Entry>& list : lists) {
-    entries_.insert(entries_.end(), list.begin(), list.end());
-    first_.push_back(static_cast<std::uint32_t>(entries_.size()));
-  }
-}
-
-void Replication::place_blocks(const Field& terrain, const Task& task) {
-  const double side = rock_.tile.side;
-  const Box domain = to_tile(options_.domain);
-  // One more cell around, for blocks that reach into the domain from outside.
-  const IVec3 lo = cell_of(domain.lo, side) - 1;
-  const IVec3 hi = cell_of(domain.hi, side) + 1;
-  std::vector<IVec3> cells;
-  for (int z = lo.z; z <= hi.z; ++z)
-    for (int y = lo.y; y <= hi.y; ++y)
-      for (int x = lo.x; x <= hi.x; ++x) cells.emplace_back(x, y, z);
-  require(std::max({std::abs(lo.x), std::abs(lo.y), std::abs(lo.z), hi.x, hi.y, hi.z}) < (1 << 20), "domain",
-          "at most 2^20 tiles from the origin", options_.domain.hi.x);
-
-  double reach = 0.0;
-  for (const Shape& shape : shapes_)
-    reach = std::max({reach, glm::length(shape.support.lo), glm::length(shape.support.hi)});
-  task.begin("placing blocks", cells.size());
+void Replication::place_blocks(const Field& terrain, double reach, const Task& task) {
+  struct Numbered {
+    std::size_t index;
+    Arrangement::Copy copy;
+  };
+  std::vector<Numbered> copies;
+  std::vector<char> used(arrangement_.list_count(), 0);
+  arrangement_.visit(to_tile(options_.domain), [&](std::size_t index, const Arrangement::Copy& copy) {
+    copies.push_back({index, copy});
+    used[copy.list] = 1;
+    return true;
+  });
+  const std::vector<Block> blocks = make_shapes(reach, used);
+  task.begin("placing blocks", copies.size());
   const auto masks = parallel_map(
-      cells.size(),
+      copies.size(),
       [&](std::size_t i) {
         task.advance();
-        const Vec3 corner = Vec3(cells[i]) * side;
-        const Box box = rotated(rock_.world_from_tile, Box{corner, corner + side}).moved(rock_.origin).grown(reach);
+        const Arrangement::Copy& copy = copies[i].copy;
+        const List& list = lists_[copy.list];
+        if (list.count == 0) return std::vector<std::uint64_t>{};
+        const Box box =
+            rotated(rock_.world_from_tile, list.support.moved(copy.origin)).moved(rock_.origin).grown(kFloatSlack);
         if (!box.overlaps(options_.domain) || (options_.visible && !options_.visible(box))) return std::vector<std::uint64_t>{};
-        return present_blocks(cells[i], terrain);
+        return present_blocks(copy, terrain, blocks);
       },
       task);
-  first_cell_ = lo;
-  cell_count_ = hi - lo + 1;
-  presence_of_.assign(cells.size(), 0);
-  for (std::size_t i = 0; i < cells.size(); ++i) {
+  presence_of_.assign(arrangement_.size(), 0);
+  for (std::size_t i = 0; i < copies.size(); ++i) {
     std::size_t count = 0;
     for (const std::uint64_t word : masks[i]) count += static_cast<std::size_t>(std::popcount(word));
     if (count == 0) continue;
-    presence_of_[i] = static_cast<std::uint32_t>(presence_.size());
+    presence_of_[copies[i].index] = static_cast<std::uint32_t>(presence_.size());
     presence_.insert(presence_.end(), masks[i].begin(), masks[i].end());
     block_count_ += count;
   }
 }
 
-const std::uint64_t* Replication::presence(const IVec3& cell) const noexcept {
-  const IVec3 i = cell - first_cell_;
-  if (i.x < 0 || i.y < 0 || i.z < 0 || i.x >= cell_count_.x || i.y >= cell_count_.y || i.z >= cell_count_.z)
-    return nullptr;
-  const std::uint32_t first = presence_of_[(static_cast<std::size_t>(i.z) * cell_count_.y + i.y) * cell_count_.x + i.x];
-  return first == 0 ? nullptr : &presence_[first];
-}
-
-std::vector<std::uint64_t> Replication::present_blocks(const IVec3& cell, const Field& terrain) const {
-  std::vector<std::uint64_t> mask((shapes_.size() + 63) / 64, 0);
+std::vector<std::uint64_t> Replication::present_blocks(const Arrangement::Copy& copy, const Field& terrain,
+                                                       const std::vector<Block>& blocks) const {
+  const List& list = lists_[copy.list];
+  std::vector<std::uint64_t> mask((list.count + 63) / 64, 0);
   std::vector<double> x, y, z, values;
   std::vector<Vec3> gradients;
   std::vector<Label> labels;
   std::vector<Anchor> anchors;
-  for (std::size_t i = 0; i < shapes_.size(); ++i) {
-    const Block& block = rock_.tile.blocks[i];
-    if (shapes_[i].inradius < options_.min_inradius) continue;
-    const Vec3 centre = Vec3(cell) * rock_.tile.side + block.centre;
-    const Vec3 world_centre = rock_.origin + rock_.world_from_tile * centre;
-    const Box world = shapes_[i].world.moved(world_centre);
+  for (std::size_t i = 0; i < list.count; ++i) {
+    const Shape& shape = shapes_[list.first + i];
+    const Block& block = blocks[list.first + i];
+    if (shape.inradius < options_.min_inradius) continue;
+    const Vec3 world_centre = rock_.origin + rock_.world_from_tile * (copy.origin + shape.centre);
+    const Box world = shape.world.moved(world_centre);
     if (!world.overlaps(options_.domain) || (options_.visible && !options_.visible(world))) continue;
-    if (options_.criterion) {
+    const Reach reach = reach_into_body(block, world_centre);
+    if (reach == Reach::None) continue;
+    if (options_.criterion || options_.weight) {
       const std::size_t n = block.anchors.size();
       x.resize(n), y.resize(n), z.resize(n), values.resize(n), gradients.resize(n), labels.resize(n), anchors.resize(n);
       for (std::size_t k = 0; k < n; ++k) {
@@ -366,68 +347,103 @@ std::vector<std::uint64_t> Replication::present_blocks(const IVec3& cell, const 
                                             : std::acos(std::clamp(gradients[k].z / length, -1.0, 1.0));
         anchors[k] = {points[k], values[k] / length, slope, labels[k]};
       }
-      if (!present(options_.criterion, anchors)) continue;
+      std::span<const Anchor> counting = anchors;
+      if (reach == Reach::Part) {
+        options_.body->values(points, values, {});
+        std::size_t inside = 0;
+        for (std::size_t k = 0; k < n; ++k)
+          if (values[k] < 0.0) std::swap(anchors[inside++], anchors[k]);
+        if (inside > 0) counting = counting.first(inside);
+      }
+      if (options_.criterion && !present(options_.criterion, counting)) continue;
+      if (options_.weight) {
+        const double weight = mean_weight(options_.weight, counting);
+        if (weight < 1.0 && weight <= drop_threshold(copy.id, i, shape.size_rank)) continue;
+      }
     }
     mask[i / 64] |= 1ull << (i % 64);
   }
   return mask;
 }
 
-bool Replication::block_present(const IVec3& cell, std::size_t block) const noexcept {
-  const std::uint64_t* const present = presence(cell);
+Replication::Reach Replication::reach_into_body(const Block& block, const Vec3& world_centre) const {
+  if (!options_.body) return Reach::Whole;
+  const Field& body = *options_.body;
+  const Box bounds = block.bounds;
+  const double around = body.lipschitz() * glm::length(glm::max(glm::abs(bounds.lo), glm::abs(bounds.hi)));
+  const double middle = body.value(world_centre);
+  if (middle >= around) return Reach::None;
+  if (middle <= -around) return Reach::Whole;
+  // Along the block's edges, in steps that its body's Lipschitz constant allows: a bed may pass between the corners. A
+  // splinter that the resolution cannot show is left out.
+  const BlockMesh& hull = block.hull;
+  double deepest = middle, shallowest = middle;
+  for (const auto& triangle : hull.triangles)
+    for (int corner = 0; corner < 3; ++corner) {
+      if (triangle[corner] > triangle[(corner + 1) % 3]) continue;  // Each edge once, in one of its two triangles.
+      const Vec3 from = world_centre + rock_.world_from_tile * hull.vertices[triangle[corner]];
+      const Vec3 along = rock_.world_from_tile * (hull.vertices[triangle[(corner + 1) % 3]] - hull.vertices[triangle[corner]]);
+      const double step = 1.0 / (body.lipschitz() * std::max(glm::length(along), 1e-9));
+      for (double t = 0.0; t < 1.0 + kEdgeStep;) {
+        const double value = body.value(from + std::min(t, 1.0) * along);
+        deepest = std::min(deepest, value);
+        shallowest = std::max(shallowest, value);
+        t += std::max(std::abs(value) * step, kEdgeStep);
+      }
+    }
+  return deepest > -kSplinter * options_.min_inradius ? Reach::None : shallowest <= 0.0 ? Reach::Whole : Reach::Part;
+}
+
+double Replication::drop_threshold(const IVec3& copy, std::size_t block, double size_rank) const {
+  // Copies are fewer than 2²¹ along each axis.
+  std::uint64_t index = 0;
+  for (int axis = 0; axis < 3; ++axis) index = (index << 21) | (static_cast<std::uint64_t>(copy[axis]) & 0x1FFFFF);
+  Rng rng(options_.seed ^ (static_cast<std::uint64_t>(block) * 0x9E3779B97F4A7C15ull), "presence", index);
+  return outcrop::drop_threshold(size_rank, rng.uniform());
+}
+
+bool Replication::block_present(const IVec3& copy, std::size_t block) const noexcept {
+  const std::size_t index = arrangement_.index(copy);
+  const std::uint64_t* const present = index < arrangement_.size() ? presence(index) : nullptr;
   return present && ((present[block / 64] >> (block % 64)) & 1) != 0;
 }
 
 std::size_t Replication::tile_bytes() const noexcept {
-  std::size_t bytes = entries_.size() * sizeof(Entry) + first_.size() * sizeof(std::uint32_t);
-  for (const Shape& shape : shapes_) bytes += sizeof(Shape) + shape.kernel.plane_count() * 4 * sizeof(float);
+  std::size_t bytes = lists_.size() * sizeof(List);
+  for (const Shape& shape : shapes_)
+    bytes += sizeof(Shape) + sizeof(Box) + shape.kernel.plane_count() * 4 * sizeof(float);
   return bytes;
 }
 
 template <class Visit>
 void Replication::visit_blocks(const Box& tile_box, Visit&& visit) const {
-  const double side = rock_.tile.side;
-  // Owners of blocks whose supports can reach the box. In doubles first: a box may be far away.
-  const Vec3 lo = glm::max(glm::floor((tile_box.lo - supports_.hi) / side), Vec3(first_cell_));
-  const Vec3 hi = glm::min(glm::floor((tile_box.hi - supports_.lo) / side), Vec3(first_cell_ + cell_count_ - 1));
-  if (glm::any(glm::greaterThan(lo, hi))) return;
-  const std::size_t words = (shapes_.size() + 63) / 64;
-  for (int z = static_cast<int>(lo.z); z <= static_cast<int>(hi.z); ++z)
-    for (int y = static_cast<int>(lo.y); y <= static_cast<int>(hi.y); ++y)
-      for (int x = static_cast<int>(lo.x); x <= static_cast<int>(hi.x); ++x) {
-        const std::uint64_t* const present = presence({x, y, z});
-        if (!present) continue;
-        const Vec3 corner = Vec3(x, y, z) * side;
-        const Box local = tile_box.moved(-corner).grown(kFloatSlack);
-        for (std::size_t w = 0; w < words; ++w)
-          for (std::uint64_t bits = present[w]; bits != 0; bits &= bits - 1) {
-            const auto block = static_cast<std::uint32_t>(64 * w + static_cast<std::size_t>(std::countr_zero(bits)));
-            if (supports_in_tile_[block].overlaps(local) && !visit(block, corner + shapes_[block].centre)) return;
-          }
+  arrangement_.visit(tile_box, [&](std::size_t index, const Arrangement::Copy& copy) {
+    const std::uint64_t* const present = presence(index);
+    if (!present) return true;
+    const List& list = lists_[copy.list];
+    const Box local = tile_box.moved(-copy.origin).grown(kFloatSlack);
+    if (!list.support.overlaps(local)) return true;
+    for (std::uint32_t w = 0; w < (list.count + 63) / 64; ++w)
+      for (std::uint64_t bits = present[w]; bits != 0; bits &= bits - 1) {
+        const std::uint32_t shape = list.first + 64 * w + static_cast<std::uint32_t>(std::countr_zero(bits));
+        if (supports_in_tile_[shape].overlaps(local) && !visit(shape, copy.origin + shapes_[shape].centre)) return false;
       }
+    return true;
+  });
 }
 
 void Replication::values(const Points& points, std::span<double> values, std::span<Vec3> gradients) const noexcept {
-  const double side = rock_.tile.side;
-  const double voxel = side / voxels_;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const Vec3 p = to_tile(points[i]);
     double best = options_.cap;
     Vec3 best_gradient(0.0);
     bool has_growth = false;
     double growth = options_.swelling;
     Vec3 growth_gradient(0.0);
-    const IVec3 global(glm::floor(p / voxel));
-    const IVec3 cell(floor_div(global.x, voxels_), floor_div(global.y, voxels_), floor_div(global.z, voxels_));
-    const IVec3 v = global - cell * voxels_;
-    const std::size_t index = (static_cast<std::size_t>(v.z) * voxels_ + v.y) * voxels_ + v.x;
-    for (std::uint32_t e = first_[index]; e < first_[index + 1]; ++e) {
-      const Entry& entry = entries_[e];
-      const IVec3 owner = cell + IVec3(entry.dx, entry.dy, entry.dz);
-      if (!block_present(owner, entry.block)) continue;
-      const Shape& shape = shapes_[entry.block];
-      const Vec3 local = p - (Vec3(owner) * side + shape.centre);
-      if (!shape.support.contains(local)) continue;
+    const Vec3 p = to_tile(points[i]);
+    visit_blocks({p, p}, [&](std::uint32_t block, const Vec3& position) {
+      const Shape& shape = shapes_[block];
+      const Vec3 local = p - position;
+      if (!shape.support.contains(local)) return true;
       if (!has_growth && options_.crack_floor) {
         const double raw = -options_.closure_slope * options_.crack_floor->value(points[i]);
         growth = options_.swelling + std::clamp(raw, 0.0, options_.closure);
@@ -440,10 +456,11 @@ void Replication::values(const Points& points, std::span<double> values, std::sp
       Vec3f g(0.0f);
       shape.kernel.values(1, &x, &y, &z, &b, gradients.empty() ? nullptr : &g);
       const double value = static_cast<double>(b) - growth;
-      if (value >= best) continue;
+      if (value >= best) return true;
       best = value;
       best_gradient = rock_.world_from_tile * Vec3(g) - growth_gradient;
-    }
+      return true;
+    });
     values[i] = best;
     if (!gradients.empty()) gradients[i] = best_gradient;
   }
@@ -468,7 +485,7 @@ std::shared_ptr<const PlacedBlocks> Replication::blocks_in(const Box& box, std::
 }
 
 Interval Replication::bound(const Box& box) const noexcept {
-  if (!large(box)) return blocks_in(box, shapes_.size() * 64)->bound(box);
+  if (!large(box)) return blocks_in(box, std::numeric_limits<std::size_t>::max())->bound(box);
   Interval result{options_.cap, options_.cap};
   visit_blocks(to_tile(box), [&](std::uint32_t, const Vec3&) {
     result.lo = -deepest_;

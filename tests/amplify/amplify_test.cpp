@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "implicit/field_contract.h"
@@ -131,6 +132,119 @@ TEST(Amplify, IsTheSameForAnyNumberOfThreads) {
   for (int i = 0; i < 5'000; ++i) {
     const double x = rng.uniform(1.0, 62.0);
     const double y = rng.uniform(1.0, 62.0);
+    const double z = rng.uniform(-1.0, 27.0);
+    ASSERT_EQ(one.field->value({x, y, z}), two.field->value({x, y, z}));
+  }
+}
+
+StrataFile bedded(double undulation = 0.5) {
+  StrataFile file = small_blocks();
+  file.materials.push_back(file.materials[0]);
+  file.materials[1].name = "other";
+  file.materials[1].block_type = BlockType::Prismatic;
+  file.strata.layers = {{.material = 0, .top = 2.3}, {.material = 1, .top = 4.4}};
+  file.strata.base = file.base = 0.0;
+  file.strata.dip = radians(10.0);
+  file.strata.undulation = undulation;
+  file.strata.undulation_wavelength = 20.0;
+  return file;
+}
+
+/// Every point of rock has the label of the rock that the strata hold there, so no block reaches into another's bed.
+void expect_labels_of_the_strata(const StrataFile& file, const Heightfield& heightfield) {
+  const Amplified a = amplified(heightfield, file, 0.05);
+  const Strata strata = strata_on(file, heightfield);
+  const Label ground = static_cast<Label>(file.materials.size());
+  Rng rng(4, "amplify test");
+  std::array<int, 2> seen{};
+  for (int i = 0; i < 40'000; ++i) {
+    const double x = rng.uniform(1.0, 62.0);
+    const double y = rng.uniform(1.0, 62.0);
+    const double z = heightfield.at(x, y).h + rng.uniform(-3.0, 1.0);
+    const double px[] = {x}, py[] = {y}, pz[] = {z};
+    if (a.field->value({x, y, z}) >= -1e-3) continue;  // A closed joint welds by a millimetre.
+    Label label = 0;
+    a.field->labels({px, py, pz}, {&label, 1});
+    if (label == ground) continue;
+    ASSERT_EQ(label, strata.material({x, y, z})) << x << ' ' << y << ' ' << z;
+    ++seen[label];
+  }
+  EXPECT_GT(seen[0], 2000);
+  EXPECT_GT(seen[1], 2000);
+}
+
+TEST(Amplify, NoBlockHasTwoColours) { expect_labels_of_the_strata(bedded(), test::terraces()); }
+
+TEST(Amplify, NoBlockCrossesAFoldOrAFault) {
+  StrataFile file = bedded(0.0);
+  file.strata.fold = {.amplitude = 2.0, .wavelength = 30.0, .axis = 0.4};
+  file.strata.faults = {{.point = {30.0, 30.0, 12.0}, .dip = radians(60.0), .dip_direction = 1.0, .slip = 1.3}};
+  expect_labels_of_the_strata(file, test::terraces());
+}
+
+TEST(Amplify, BeddedRockCoversTheSteepSurfaceToo) {
+  const Amplified a = amplified(test::terraces(), bedded());
+  EXPECT_GE(a.rock_coverage, 0.9);
+  EXPECT_LT(std::abs(a.mean_offset), 0.25 * a.mean_block_size);
+}
+
+TEST(Amplify, BeddedRockPassesTheFieldContract) {
+  StrataFile file = bedded();
+  file.strata.faults = {{.point = {30.0, 30.0, 12.0}, .dip = radians(60.0), .dip_direction = 1.0, .slip = 1.3}};
+  const Amplified a = amplified(test::terraces(), file);
+  test::check_field_contract(*a.field, {Vec3(2.0, 2.0, -2.0), Vec3(61.0, 61.0, 28.0)}, 3);
+}
+
+/// Rock in the northern half, thinning out southwards.
+StrataFile ruled() {
+  StrataFile file = small_blocks();
+  file.placement.where = PlacementRule{.kind = PlacementRule::Kind::Box, .soft = 12.0,
+                                       .box = {Vec3(-1e3, 25.0, -1e3), Vec3(1e3, 1e3, 1e3)}};
+  return file;
+}
+
+TEST(Amplify, LeavesGroundThatARuleExcludesUnchangedToTheBit) {
+  const Heightfield heightfield = test::terraces();
+  const Amplified a = amplified(heightfield, ruled()), all = amplified(heightfield);
+  EXPECT_LT(a.rocks.at(0).replicated_blocks, all.rocks.at(0).replicated_blocks);
+  Rng rng(5, "amplify test");
+  int changed = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    const double x = rng.uniform(0.0, 63.0);
+    const double y = rng.uniform(0.0, 63.0);
+    const double z = heightfield.at(x, y).h + rng.uniform(-3.0, 3.0);
+    const bool same = a.field->value({x, y, z}) == a.terrain->value({x, y, z});
+    ASSERT_TRUE(same || y > 25.0) << x << ' ' << y << ' ' << z;
+    changed += !same;
+  }
+  EXPECT_GT(changed, 2000);
+}
+
+TEST(Amplify, ARuleThatHoldsEverywhereChangesNothing) {
+  StrataFile file = small_blocks();
+  file.placement.where = PlacementRule{.kind = PlacementRule::Kind::Altitude, .lo = -1e3, .hi = 1e3};
+  const Amplified a = amplified(test::terraces(), file), b = amplified(test::terraces());
+  EXPECT_EQ(a.rocks.at(0).replicated_blocks, b.rocks.at(0).replicated_blocks);
+  Rng rng(6, "amplify test");
+  for (int i = 0; i < 5000; ++i) {
+    const double x = rng.uniform(0.0, 63.0);
+    const double y = rng.uniform(0.0, 63.0);
+    const double z = rng.uniform(-1.0, 27.0);
+    ASSERT_EQ(a.field->value({x, y, z}), b.field->value({x, y, z}));
+  }
+}
+
+TEST(Amplify, RulesGiveTheSameForAnyNumberOfThreads) {
+  const auto run = [](int threads) {
+    const ThreadLimit limit(threads);
+    return amplified(test::terraces(), ruled());
+  };
+  const Amplified one = run(1), two = run(2);
+  EXPECT_EQ(one.rocks.at(0).replicated_blocks, two.rocks.at(0).replicated_blocks);
+  Rng rng(7, "amplify test");
+  for (int i = 0; i < 3000; ++i) {
+    const double x = rng.uniform(1.0, 62.0);
+    const double y = rng.uniform(20.0, 62.0);
     const double z = rng.uniform(-1.0, 27.0);
     ASSERT_EQ(one.field->value({x, y, z}), two.field->value({x, y, z}));
   }

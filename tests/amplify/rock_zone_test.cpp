@@ -79,6 +79,57 @@ TEST(RockZone, IsTheSameHoweverMuchGentleGroundLiesAround) {
   }
 }
 
+TEST(RockZone, IsExactlyNothingWhereItsWeightIsNothing) {
+  const Heightfield heightfield = test::terraces();
+  const auto weight = [](const Vec3& p) { return std::clamp((p.y - 20.0) / 15.0, 0.0, 1.0) * (p.z < 21.0); };
+  const RockZone whole = zone_of(heightfield);
+  const RockZone zone = make_rock_zone(heightfield, {.lo = heightfield.lo(), .hi = heightfield.hi(), .slope = kSlope, .reach = 3.0,
+                                                     .spacing = 0.5, .weight_at = weight});
+  Rng rng(2, "rock zone test");
+  int thin = 0;
+  for (int i = 0; i < 50'000; ++i) {
+    const double x = rng.uniform(heightfield.lo().x, heightfield.hi().x);
+    const double y = rng.uniform(heightfield.lo().y, heightfield.hi().y);
+    const double recess = zone.recess.at(x, y).h;
+    if (weight({x, y, heightfield.at(x, y).h}) == 0.0) {
+      ASSERT_EQ(recess, 0.0) << x << ' ' << y;
+      ASSERT_EQ(zone.advance.at(x, y).h, 0.0);
+    }
+    ASSERT_LE(recess, whole.recess.at(x, y).h + 1e-6);
+    if (y < 35.0 && recess > 0.0) ++thin;
+  }
+  EXPECT_GT(thin, 300);
+}
+
+TEST(RockZone, WithdrawsTheGroundBySquareOfALevelWeight) {
+  const Heightfield heightfield = test::terraces();
+  const RockZone whole = zone_of(heightfield);
+  const RockZone half = make_rock_zone(heightfield, {.lo = heightfield.lo(), .hi = heightfield.hi(), .slope = kSlope, .reach = 3.0,
+                                                     .spacing = 0.5, .weight_at = [](const Vec3&) { return 0.5; }});
+  for (double x = 1.0; x < 63.0; x += 0.7)
+    for (double y = 1.0; y < 63.0; y += 0.9)
+      ASSERT_NEAR(half.recess.at(x, y).h, 0.25 * whole.recess.at(x, y).h, 1e-4);
+}
+
+TEST(RockZone, BlocksThinOutTowardsTheRim) {
+  const Heightfield heightfield = test::terraces();
+  const RockZone zone = make_rock_zone(heightfield, {.lo = heightfield.lo(), .hi = heightfield.hi(), .slope = kSlope, .reach = 3.0,
+                                                     .spacing = 0.5, .rim = 1.0});
+  ASSERT_TRUE(zone.weighted);
+  int part = 0, whole = 0;
+  for (double x = 1.0; x < 63.0; x += 0.7)
+    for (double y = 1.0; y < 63.0; y += 0.9) {
+      const double weight = zone.rim.at(x, y).h;
+      part += weight > 0.05 && weight < 0.95;
+      whole += weight >= 0.95;
+      // Next to any place within reach there is ground of the zone.
+      const Vec2 ground = zone.ground.at({x, y});
+      ASSERT_TRUE(zone.recess.at(x, y).h == 0.0 || glm::length(ground - Vec2(x, y)) < 1.0);
+    }
+  EXPECT_GT(part, 200);
+  EXPECT_GT(whole, 100);
+}
+
 TEST(RockZone, WithoutSteepGroundIsEmpty) {
   ElevationGrid grid{.width = 8, .height = 8};
   for (int i = 0; i < 64; ++i) grid.elevations.push_back(0.2f * static_cast<float>(i % 8));

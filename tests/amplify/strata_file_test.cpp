@@ -77,13 +77,14 @@ TEST_F(StrataFileTest, EveryKeyArrives) {
   ASSERT_TRUE(lower.joints);
   EXPECT_EQ(lower.joints->discs, 21);
   EXPECT_EQ(lower.joints->irregular_share, 0.25);
-  EXPECT_EQ(lower.joints->centre_spacing, 3.0) << "patterns are for 20 m: metres of a 10 m tile count double";
-  EXPECT_EQ(lower.joints->column_width, 4.0);
+  EXPECT_EQ(lower.joints->centre_spacing, 1.5);
+  ASSERT_EQ(lower.joints->columns.size(), 1u);
+  EXPECT_EQ(lower.joints->columns[0].width, 2.0);
   ASSERT_EQ(lower.joints->sets.size(), 1u);
   EXPECT_EQ(lower.joints->sets[0].kappa, 50.0);
   EXPECT_EQ(lower.joints->sets[0].share, 2.0);
-  EXPECT_EQ(lower.joints->sets[0].radius_lo, 2.0);
-  EXPECT_EQ(lower.joints->sets[0].radius_hi, 8.0);
+  EXPECT_EQ(lower.joints->sets[0].radius_lo, 1.0);
+  EXPECT_EQ(lower.joints->sets[0].radius_hi, 4.0);
   EXPECT_EQ(file.materials[1].block_type, BlockType::Columnar);
   ASSERT_EQ(file.strata.layers.size(), 3u);
   EXPECT_EQ(file.strata.layers[0].material, 1);
@@ -108,7 +109,7 @@ TEST_F(StrataFileTest, EveryKeyArrives) {
 
 TEST_F(StrataFileTest, JointsFallTowardsTheirDipDirection) {
   const auto normal = [&](const char* angles) {
-    return read(std::string(R"({"materials": [{"tile_side": 10, "joint_sets": [{)") + angles + "}]}]}").materials[0].joints->sets[0].normal;
+    return read(std::string(R"({"materials": [{"tile_side": 10, "irregular_share": 1, "joint_sets": [{)") + angles + "}]}]}").materials[0].joints->sets[0].normal;
   };
   EXPECT_LT(glm::length(normal(R"("dip_deg": 0)") - Vec3(0, 0, 1)), 1e-12);
   EXPECT_LT(glm::length(normal(R"("dip_deg": 90, "dip_direction_deg": 90)") - Vec3(1, 0, 0)), 1e-12) << "east";
@@ -130,6 +131,69 @@ TEST_F(StrataFileTest, ReliefPeriodsDivideTheTile) {
     EXPECT_NEAR(repeats, std::round(repeats), 1e-12);
     EXPECT_GE(repeats, 1.0);
   }
+}
+
+TEST_F(StrataFileTest, SequencesOfThicknessesRepeatFromTheirBase) {
+  const StrataFile file = read(R"({"materials": [{"name": "a"}, {"name": "b"}], "strata": {"tops": "relative", "base": 0.5, "repeat": true,
+    "layers": [{"material": "a", "thickness": [1, 2, 3]}, {"material": "b", "thickness": [4, 5]}]}})");
+  ElevationGrid grid{.width = 2, .height = 2, .elevations = {100.0f, 100.0f, 120.0f, 120.0f}};
+  const Strata strata = strata_on(file, Heightfield(grid));
+  EXPECT_NEAR(strata.base.value(), 110.0, 1e-3);
+  const double tops[] = {1, 5, 7, 12, 15, 19, 20, 25, 27, 31, 34, 39};  // 1 4, 2 5, 3 4, 1 5, 2 4, 3 5.
+  ASSERT_EQ(strata.layers.size(), std::size(tops));
+  for (std::size_t i = 0; i < std::size(tops); ++i) {
+    EXPECT_NEAR(strata.layers[i].top, 110.0 + tops[i], 1e-3) << i;
+    EXPECT_EQ(strata.layers[i].material, i % 2) << i;
+  }
+}
+
+TEST_F(StrataFileTest, FoldsFaultsAndMapsArrive) {
+  write_image(folder_ / "map.exr", {.width = 3, .height = 3, .channels = 1, .pixels = {0, 0, 0, 0, 7, 0, 0, 0, 0}, .channel_names = {"Y"}});
+  const StrataFile file = read(R"({"materials": [{"name": "a"}, {"name": "b", "where": {"slope_deg": [60, null], "soft": 9}}], "strata": {
+    "fold": {"amplitude": 3, "wavelength": 40, "axis_deg": 90},
+    "faults": [{"point": [1, 2, 3], "dip_deg": 60, "dip_direction_deg": 180, "slip": -4, "extent": 20}],
+    "map": {"image": "map.exr", "materials": [{"colour": 7, "material": "b"}]}}, "placement": {"rim": 2, "where": {"altitude": [null, 9]}}})");
+  EXPECT_EQ(file.strata.fold.amplitude, 3.0);
+  EXPECT_EQ(file.strata.fold.wavelength, 40.0);
+  EXPECT_DOUBLE_EQ(file.strata.fold.axis, radians(90));
+  ASSERT_EQ(file.strata.faults.size(), 1u);
+  EXPECT_EQ(file.strata.faults[0].slip, -4.0);
+  EXPECT_EQ(file.strata.faults[0].extent, 20.0);
+  EXPECT_EQ(file.placement.rim, 2.0);
+  EXPECT_EQ(file.placement.where->hi, 9.0);
+  EXPECT_FALSE(file.materials[0].where);
+  EXPECT_DOUBLE_EQ(file.materials[1].where->lo, radians(60));
+  EXPECT_DOUBLE_EQ(file.materials[1].where->soft, radians(9));
+  ElevationGrid grid{.width = 3, .height = 3, .origin = Vec2(10.0, 20.0), .elevations = std::vector<float>(9, 1.0f)};
+  const Strata strata = strata_on(file, Heightfield(grid));
+  EXPECT_EQ(strata.faults[0].point, Vec3(11, 22, 3));
+  EXPECT_EQ(strata.material({11.0, 21.0, 0.0}), 1);
+  EXPECT_EQ(strata.material({10.0, 20.0, 0.0}), 0);
+  grid.width = 9, grid.elevations.resize(27, 1.0f);
+  const std::string error = test::message_of<InputError>([&] { (void)strata_on(file, Heightfield(grid)); });
+  EXPECT_NE(error.find("strata.json:4:13:"), std::string::npos) << error;
+  EXPECT_NE(error.find("9 x 3"), std::string::npos) << error;
+}
+
+TEST_F(StrataFileTest, ExamplesOfTheFormatsAreValid) {
+  std::ifstream document(OUTCROP_SOURCE_DIR "/docs/formats.md");
+  for (const char* image : {"geology.png", "bare.png"}) std::ofstream(folder_ / image) << "not read here";
+  int examples = 0;
+  std::string line, text;
+  bool within = false;
+  while (std::getline(document, line)) {
+    if (within && line == "```") {
+      const bool scene = text.find("\"field\"") != std::string::npos;
+      EXPECT_TRUE(scene || error_of(text).empty()) << text << error_of(text);
+      examples += !scene;
+      within = false, text.clear();
+    } else if (within) {
+      text += line + "\n";
+    } else {
+      within = line == "```json";
+    }
+  }
+  EXPECT_GE(examples, 3);
 }
 
 TEST_F(StrataFileTest, ShippedExamplesAreValid) {
@@ -166,6 +230,11 @@ TEST_F(StrataFileTest, TheReaderKnowsEveryKeyOfTheSchema) {
   expect_known(member(kinds, "joint_set"), R"({"materials": [{"joint_sets": [{)", "}]}]}");
   expect_known(member(kinds, "strata"), R"({"strata": {)", "}}");
   expect_known(member(kinds, "placement"), R"({"placement": {)", "}}");
+  expect_known(member(kinds, "rule"), R"({"placement": {"where": {)", "}}}");
+  expect_known(member(kinds, "layer"), R"({"strata": {"layers": [{"material": "rock", )", "}]}}");
+  expect_known(member(kinds, "fold"), R"({"strata": {"fold": {)", "}}}");
+  expect_known(member(kinds, "fault"), R"({"strata": {"faults": [{)", "}]}}");
+  expect_known(member(kinds, "map"), R"({"strata": {"map": {)", "}}}");
 }
 
 /// Values at, near and far from every bound, in any combination: what passes the reader must not fail later.
@@ -264,6 +333,22 @@ TEST_F(StrataFileTest, MistakesAreNamedWithTheirPlace) {
       {"{\"strata\": {\"layers\": [{\"material\": \"rock\"}, {\"material\": \"rock\"}]}}", {"top"}},
       {"{\"strata\": {\"layers\": [{\"material\": \"rock\", \"top\": 9}, {\"material\": \"rock\", \"top\": 8}]}}", {"top", "8"}},
       {"{\"strata\": {\"tops\": \"absolute\"}}", {"tops", "relative", "absolute"}},
+      {R"({"strata": {"repeat": true}})", {":1:13:", "layers to repeat"}},
+      {R"({"strata": {"repeat": true, "layers": [{"material": "rock"}]}})", {"thickness", "repeats"}},
+      {R"({"strata": {"layers": [{"material": "rock", "top": 3, "thickness": 2}]}})", {"both"}},
+      {R"({"strata": {"layers": [{"material": "rock", "top": 3}, {"material": "rock", "thickness": 2}]}})", {":1:56:", "all"}},
+      {R"({"strata": {"layers": [{"material": "rock", "thickness": [2, 3]}]}})", {"thickness", "number"}},
+      {R"({"strata": {"layers": [{"material": "rock", "thickness": 0}]}})", {"thickness", "0.001", "0"}},
+      {R"({"strata": {"base": 5, "repeat": true, "layers": [{"material": "rock", "top": 4}]}})", {"top", "base"}},
+      {R"({"strata": {"fold": {"amplitude": 50, "wavelength": 100}}})", {"quarter", "72 degrees"}},
+      {R"({"strata": {"faults": [{"dip_deg": 60, "slip": 3}]}})", {":1:24:", "point"}},
+      {R"({"strata": {"faults": [{"point": [0, 0, 0], "dip_deg": 91, "slip": 3}]}})", {"dip_deg", "90", "91"}},
+      {R"({"strata": {"faults": [{"point": [0, 0, 0], "dip_deg": 60, "slip": -8, "extent": 10}]}})", {"extent", "16", "10"}},
+      {R"({"strata": {"map": {"materials": []}}})", {"image"}},
+      {R"({"strata": {"map": {"image": "gone.png", "materials": []}}})", {":1:21:", "gone.png"}},
+      {R"({"materials": [{"where": {"altitude": [3, 1]}}]})", {":1:27:", "altitude", "lower"}},
+      {R"({"placement": {"where": {"material": "rook"}}})", {":1:26:", "rook", "rock"}},
+      {R"({"placement": {"rim": -1}})", {"rim", "-1"}},
   };
   for (const Mistake& mistake : mistakes) {
     const std::string error = error_of(mistake.text);

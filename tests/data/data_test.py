@@ -38,13 +38,16 @@ def complaints(value, part, place):
     return found
 
 
-def property_names(part):
-    part = schema_of(part)
+def property_names(part, within=()):
+    reference = part.get("$ref")
+    if reference in within:  # Rules hold rules.
+        return
+    part, within = schema_of(part), (*within, reference) if reference else within
     for key, child in part.get("properties", {}).items():
         yield key
-        yield from property_names(child)
+        yield from property_names(child, within)
     if "items" in part:
-        yield from property_names(part["items"])
+        yield from property_names(part["items"], within)
 
 
 class Strata(unittest.TestCase):

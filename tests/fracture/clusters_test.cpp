@@ -20,7 +20,8 @@ ClusterOptions options_of(const JointPattern& pattern) {
           .covered_share = pattern.covered_share,
           .least_angle = pattern.least_angle,
           .longest = 19.0,
-          .column_width = pattern.column_width};
+          .columns = pattern.columns,
+          .sets = pattern.sets};
 }
 
 struct Case {
@@ -94,15 +95,30 @@ TEST(Clusters, TileTheTorusWhateverTheJoints) {
   const auto set = [](const Vec3& normal, double kappa, double radius) {
     return JointSet{.normal = glm::normalize(normal), .kappa = kappa, .radius_lo = radius, .radius_hi = radius};
   };
+  const auto persistent = [](const char* name, const Vec3& normal, double spacing, std::vector<std::string> ends_at) {
+    return JointSet{.name = name,
+                    .normal = glm::normalize(normal),
+                    .kappa = 60,
+                    .spacing = spacing,
+                    .radius_law = RadiusLaw::Persistent,
+                    .ends_at = std::move(ends_at)};
+  };
   const std::vector<JointPattern> patterns{
       {.sets = {set({0, 0, 1}, 300, 5)}, .discs = 0},
       {.sets = {set({0, 0, 1}, 300, 5)}, .discs = 1},
       {.sets = {set({0, 0, 1}, 1e8, 30)}, .discs = 12},
       {.sets = {set({0.3, 0.5, 0.8}, 1e8, 12)}, .discs = 20},
       {.sets = {set({0.9, 0.1, 0.2}, 500, 25), set({0.8, -0.3, 0.3}, 500, 4)}, .discs = 30},
-      {.sets = {set({1, 1, 1}, 400, 3)}, .discs = 200, .column_width = 1.5},
-      {.sets = {set({1, 0, 0}, 400, 3)}, .discs = 40, .column_width = 4.0},
-      {.sets = {set({0, 0, 1}, 0.1, 60)}, .discs = 60}};
+      {.sets = {set({1, 1, 1}, 400, 3)}, .discs = 200, .columns = {{.width = 1.5}}},
+      {.sets = {set({1, 0, 0}, 400, 3)}, .discs = 40, .columns = {{.width = 4.0}}},
+      {.sets = {set({0, 0, 1}, 0.1, 60)}, .discs = 60},
+      {.sets = {persistent("a", {1, 1, 0.2}, 1.5, {}), persistent("b", {1, -1, 0}, 6, {"a"}),
+                persistent("c", {0.1, 0.5, 1}, 2, {"a", "b"})}},
+      {.sets = {persistent("a", {0, 0, 1}, 0.8, {}), set({1, 0, 0}, 50, 2)}, .discs = 40},
+      {.sets = {persistent("a", {0.1, 0.4, 1}, 3, {std::string(kColumns)})},
+       .columns = {{.width = 2.5, .height = 2.0}, {.width = 2.0, .irregularity = 0.8}}},
+      {.sets = {set({1, 0, 0}, 50, 5)},
+       .discs_at = {{.centre = {19, 1, 10}, .radius = 8.0, .normal = glm::normalize(Vec3(1, 2, 3))}}}};
   for (std::size_t i = 0; i < patterns.size(); ++i)
     for (Seed seed = 1; seed <= 3; ++seed) {
       SCOPED_TRACE("pattern " + std::to_string(i) + ", seed " + std::to_string(seed));
@@ -119,7 +135,7 @@ TEST(Clusters, AreBoundedByJointsAlone) {
       for (const Polytope::Face& face : cluster.shape.faces) {
         ASSERT_TRUE(face.joint >= 0 || face.joint == kAddedJoint || face.joint == kColumnJoint) << name(type);
         if (face.joint < 0) continue;
-        const Disc& disc = c.discs[static_cast<std::size_t>(face.joint)];
+        const Disc& disc = c.clusters.discs[static_cast<std::size_t>(face.joint)];
         const double turn = std::acos(std::min(1.0, std::abs(glm::dot(disc.normal, face.plane.normal))));
         ASSERT_LE(turn, c.clusters.largest_bend + 1e-6) << name(type);
         // The face's plane passes through an image of the disc's centre.

@@ -79,24 +79,13 @@ TEST(DrawDiscs, SpreadTheCentresOfASetWhereThereIsRoom) {
 }
 
 TEST(DrawDiscs, ScaleWithTheTile) {
-  const JointPattern pattern = joint_pattern(BlockType::Equidimensional);
-  const auto small = draw_discs(pattern, 5.0, 3);
-  const auto large = draw_discs(pattern, 40.0, 3);
+  const auto small = draw_discs(joint_pattern(BlockType::Equidimensional, 5.0), 5.0, 3);
+  const auto large = draw_discs(joint_pattern(BlockType::Equidimensional, 40.0), 40.0, 3);
   ASSERT_EQ(small.size(), large.size());
   for (std::size_t i = 0; i < small.size(); ++i) {
     EXPECT_NEAR(8.0 * small[i].radius, large[i].radius, 1e-9);
     EXPECT_NEAR(glm::length(8.0 * small[i].centre - large[i].centre), 0.0, 1e-9);
   }
-}
-
-TEST(DrawDiscs, HaveTruncatedPowerLawRadii) {
-  // Median of r^−(a+1) on [lo, hi]: lo (1 − (1 − (lo/hi)^a) / 2)^(−1/a).
-  const JointPattern pattern{.sets = {{.kappa = 50.0, .radius_lo = 0.5, .radius_hi = 8.0, .radius_exponent = 1.6}},
-                             .discs = 4000,
-                             .centre_spacing = 0.0};
-  const auto discs = draw_discs(pattern, kSide, 1);
-  const double median = 0.5 * std::pow(1.0 - 0.5 * (1.0 - std::pow(0.5 / 8.0, 1.6)), -1.0 / 1.6);
-  EXPECT_NEAR(discs[2000].radius, median, 0.03 * median);
 }
 
 TEST(DrawDiscs, MeetScanLinesAsTheirIntensitySays) {

@@ -196,6 +196,29 @@ TEST(Tile, ComesNearToTableOneOfThePaper) {
   }
 }
 
+TEST(Tile, KnowsTheJointOfEveryPlane) {
+  for (const BlockType type : kBlockTypes)
+    for (const Seed seed : kSeeds) {
+      SCOPED_TRACE(std::string(name(type)) + ", seed " + std::to_string(seed));
+      const Tile& tile = paper_tile(type, seed);
+      ASSERT_GE(tile.discs.size(), tile.statistics.discs);
+      for (const Block& block : tile.blocks) {
+        ASSERT_EQ(block.plane_joint.size(), block.planes.size());
+        for (std::size_t i = 0; i < block.planes.size(); ++i) {
+          const int joint = block.plane_joint[i];
+          if (joint < 0) {
+            ASSERT_TRUE(joint == kAddedJoint || joint == kColumnJoint);
+            continue;
+          }
+          ASSERT_LT(joint, static_cast<int>(tile.discs.size()));
+          const Disc& disc = tile.discs[static_cast<std::size_t>(joint)];
+          ASSERT_GT(std::abs(glm::dot(disc.normal, block.planes[i].normal)), 1.0 - 1e-11);
+          ASSERT_LT(disc.set, static_cast<int>(tile.sets.size()));
+        }
+      }
+    }
+}
+
 TEST(Tile, HasTheShapesOfItsType) {
   for (const Seed seed : kSeeds) {
     SCOPED_TRACE(seed);
@@ -236,7 +259,7 @@ TEST(Tile, HasColumnsWithTheIntensityOfVoronoiPrisms) {
   // Lateral P32 is the length of Voronoi edges an area: 1.861 d⁻¹ √(√3/2)… between hexagons, 2/d, and Poisson seeds,
   // 2√q.
   const Tile& tile = paper_tile(BlockType::Columnar, 1);
-  const double width = joint_pattern(BlockType::Columnar).column_width;
+  const double width = joint_pattern(BlockType::Columnar).columns[0].width;
   double area = 0.0;
   for (const Block& block : tile.blocks)
     for (const auto& t : block.hull.triangles) {

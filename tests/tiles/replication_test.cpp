@@ -51,6 +51,15 @@ TEST(Replication, WithAReliefPassesTheFieldContract) {
   test::check_field_contract(*node, {Vec3(-9.0), Vec3(9.0)}, 4);
 }
 
+TEST(Replication, OfVariantsPassesTheFieldContract) {
+  const Tile tile = make_tile(
+      {.type = BlockType::Tabular, .side = 8.0, .spacing = 0.5, .aperture = 0.04, .rounding = 0.1, .variants = 3}, 7);
+  const auto node = std::make_shared<Replication>(
+      Rock{.tile = tile, .warp = {test::noise_relief(1, 64, 64, 4.0), 0.05}, .world_from_tile = about_z(0.4)}, half_space({}),
+      ReplicationOptions{.domain = kDomain, .criterion = distance_between(-100.0, 3.0)});
+  test::check_field_contract(*node, {Vec3(-9.0), Vec3(9.0)}, 4);
+}
+
 TEST(Replication, RepeatsWithThePeriodOfTheTile) {
   const auto node = replicate({.domain = kDomain});
   Rng rng(1, "replication test");
@@ -144,6 +153,42 @@ TEST(Replication, FarFromTheOriginIsTheSameRock) {
     const double y = rng.uniform(-9, 9);
     const double z = rng.uniform(-9, 9);
     ASSERT_NEAR(near_node->value({x, y, z}), far_node->value(Vec3(x, y, z) + far), 1e-6);
+  }
+}
+
+TEST(Replication, WhatStandsAtALowWeightStandsAtAHigherOne) {
+  const auto at = [](double weight) {
+    return replicate({.domain = kDomain, .weight = [=](const Anchor&) { return weight; }, .seed = 5});
+  };
+  const auto all = replicate({.domain = kDomain}), most = at(0.8), few = at(0.2);
+  EXPECT_EQ(at(1.0)->block_count(), all->block_count());
+  EXPECT_EQ(at(0.0)->block_count(), 0u);
+  const double count = static_cast<double>(all->block_count());
+  EXPECT_NEAR(most->block_count() / count, 0.8, 0.05);
+  EXPECT_NEAR(few->block_count() / count, 0.2, 0.05);
+  for (std::size_t b = 0; b < granite().blocks.size(); ++b)
+    for (int cell = -2; cell < 2; ++cell)
+      EXPECT_LE(few->block_present({cell, 0, 1}, b), most->block_present({cell, 0, 1}, b));
+}
+
+TEST(Replication, OnlyTheAnchorsInItsBodyCount) {
+  // A bed of one metre that passes through blocks, between their corners too, up to a wall at x = 0.
+  const FieldPtr bed = slab(2.0, 3.0);
+  const auto node = replicate({.domain = kDomain, .criterion = distance_between(-100.0, 0.0), .body = bed}, 0.0,
+                              Vec3(0.0), half_space({.normal = {1, 0, 0}, .offset = 0.0}));
+  for (std::size_t b = 0; b < granite().blocks.size(); ++b) {
+    const Block& block = granite().blocks[b];
+    const Box box = block.bounds.moved(block.centre);
+    std::size_t rock = 0, inside = 0;
+    for (const Vec3& anchor : block.anchors) {
+      const Vec3 p = block.centre + anchor;
+      const bool counts = p.z > 2.0 && p.z < 3.0;
+      inside += counts;
+      rock += counts && p.x - 8.0 <= 0.0;
+    }
+    const bool stands = node->block_present({-1, 0, 0}, b);
+    EXPECT_FALSE(stands && (box.hi.z <= 2.0 || box.lo.z >= 3.0)) << b;
+    EXPECT_TRUE(inside == 0 || stands == (2 * rock >= inside)) << b;
   }
 }
 

@@ -10,6 +10,7 @@
 #include "outcrop/core/rng.h"
 #include "outcrop/core/task.h"
 #include "outcrop/fracture/joints.h"
+#include "outcrop/fracture/tile_layout.h"
 #include "outcrop/implicit/rounded_polytope.h"
 
 namespace outcrop {
@@ -19,13 +20,15 @@ inline constexpr double kSpacingsPerSide = 27.04;
 
 struct TileOptions {
   BlockType type = BlockType::Equidimensional;
-  JointPattern pattern{};         ///< Empty sets and no columns: joint_pattern(type).
+  JointPattern pattern{};         ///< Neither sets, columns nor discs by hand: joint_pattern(type, side).
   double side = 20.0;             ///< Metres, > 0.
   double spacing = 0.0;           ///< Sample spacing, metres; 0: side / kSpacingsPerSide.
   double neighbour_factor = 1.6;  ///< Graph radius over spacing, [1, 4].
   double aperture = 0.04;         ///< Width of a crack, metres, ≥ 0 and below the spacing.
   double rounding = 0.25;         ///< R of the smooth intersection; limited by half of a block's inradius.
   int min_block_samples = 12;     ///< A joint stops rather than cut off a chip of fewer samples; 1: chips stay.
+  int variants = 1;               ///< 1: the tile repeats. More: that many tiles that fit side by side, up to 256.
+  Domain domain = Domain::Torus;  ///< A box is for measuring: its blocks end at walls (kWall) and do not tile.
 };
 
 /// A triangle mesh of one convex block, relative to the block's centre; counter-clockwise from outside.
@@ -38,6 +41,7 @@ struct BlockMesh {
 struct Block {
   Vec3 centre{0.0};           ///< In [0, side)³. The block may reach across the faces: it is one block all the same.
   std::vector<Plane> planes;  ///< In a fixed order; each bounds a face.
+  std::vector<int> plane_joint;  ///< Of each plane: index into Tile::discs, or kAddedJoint, kColumnJoint, ….
   double rounding = 0.0;      ///< R for this block.
   double inradius = 0.0;      ///< Of the largest ball found around the centre.
   Box bounds;                 ///< Of the planes' polytope, unrounded.
@@ -45,11 +49,21 @@ struct Block {
   double volume = 0.0;        ///< Of the hull, m³.
   std::vector<Vec3> anchors;  ///< Spread through the block, for presence: some 8 to 32 of its samples.
   std::uint32_t sample_count = 0;
+  int layer = 0;   ///< Of the tile's layout.
+  Vec3 home{0.0};  ///< The centre in the base copy of its region: `centre` and whole tiles, where those are its period.
+};
+
+/// The joints of one set, as area in a volume (P32), 1/m.
+struct SetIntensity {
+  double asked = 0.0;  ///< 0: the set went by share.
+  double drawn = 0.0;  ///< Of its discs, Σ π r² / side³; 0 for persistent sets.
+  double made = 0.0;   ///< Of the faces between blocks along its joints.
 };
 
 /// What happened on the way, for reports; compare with Table 1 of the paper.
 struct TileStatistics {
   std::size_t samples = 0, discs = 0, clusters = 0;
+  std::vector<SetIntensity> intensities;  ///< Of each joint set.
   std::size_t merged_chips = 0;  ///< Chips that stay with their block, because the joint ends instead of parting them.
   std::size_t added_joints = 0;  ///< Joints that no disc stands for; without them pieces would wrap around the tile.
   double largest_bend = 0.0;     ///< Largest turn of a disc's normal that made it close around the tile, radians.
@@ -63,11 +77,19 @@ struct TileStatistics {
   std::size_t plain_max_planes = 0;
 };
 
-/// Blocks that tile space when repeated with period `side` along the three axes.
+/// Blocks that tile space when repeated with period `side` along the three axes; with variants, when arranged by the
+/// layout.
 struct Tile {
   double side = 20.0;
   BlockType type = BlockType::Equidimensional;
   std::vector<Block> blocks;
+  /// The discs as they cut, first as many as were drawn, in their order: one that was turned to close around the tile
+  /// has the turned normal; one that was turned in several ways stands once for each. `Disc::set` indexes `sets`.
+  std::vector<Disc> discs;
+  std::vector<JointSet> sets;  ///< The joint sets as asked for.
+  TileLayout layout;           ///< How copies stand side by side.
+  /// The blocks of the other variants, which may stand in a copy instead of `blocks`; their plane_joint is empty.
+  std::vector<std::vector<Block>> others;
   TileStatistics statistics;
 };
 

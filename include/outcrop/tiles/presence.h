@@ -27,6 +27,18 @@ using Criterion = std::function<bool(const Anchor&)>;
 [[nodiscard]] Criterion any_of(std::vector<Criterion> criteria);
 [[nodiscard]] Criterion none_of(std::vector<Criterion> criteria);
 
+/// How much of the rock stands at an anchor, [0, 1]: 1 all blocks, 0 none, between them the larger ones.
+using Weight = std::function<double(const Anchor&)>;
+
+/// The mean over the anchors. 0 without any.
+[[nodiscard]] double mean_weight(const Weight& weight, std::span<const Anchor> anchors);
+
+/// The weight below which a block is dropped: small ones go first, in an order that chance loosens.
+///
+/// @param size_rank  Share of the tile's blocks that are larger than it, [0, 1].  @param chance  Uniform in [0, 1), of
+/// this copy of the block. @return in [0, 1), uniform where both are: a weight of 0.3 leaves three blocks in ten.
+[[nodiscard]] double drop_threshold(double size_rank, double chance) noexcept;
+
 /// Half or more of the anchors satisfy the criterion (Paris et al. 2020, section 5). False without anchors.
 [[nodiscard]] bool present(const Criterion& criterion, std::span<const Anchor> anchors);
 
