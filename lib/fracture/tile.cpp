@@ -225,6 +225,7 @@ Tile make_tile(const TileOptions& options, Seed seed, const Task& task) {
   Tile tile;
   tile.side = options.side;
   tile.type = options.type;
+  tile.aperture = options.aperture;
   tile.sets = pattern.sets;
   tile.discs = discs_as_cut(clusters.discs, clusters.list);
   tile.blocks = parallel_map(
