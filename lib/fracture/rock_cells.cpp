@@ -9,7 +9,7 @@ constexpr double kTolerance = 1e-10;  // Of the side: as blocks were cut.
 
 }  // namespace
 
-RockCells::RockCells(const Tile& tile) : side_(tile.side) {
+RockCells::RockCells(const Tile& tile) : side_(tile.side), repeats_(tile.domain == Domain::Torus) {
   cells_.reserve(tile.blocks.size());
   for (const Block& block : tile.blocks) {
     Cell cell;
@@ -28,42 +28,51 @@ RockCells::RockCells(const Tile& tile) : side_(tile.side) {
 }
 
 std::vector<Crossing> RockCells::crossings(const Vec3& start, const Vec3& direction, double length) const {
+  const double across = 2.0 * side_;  // longer than the box's diagonal
   std::vector<Crossing> result;
-  for (double begun = 0.0; begun < length; begun += side_) {
-    // A stretch of at most a side, moved into the tile.
-    const double stretch = std::min(side_, length - begun);
-    const Vec3 far = start + begun * direction;
-    const Vec3 from = far - side_ * glm::floor(far / side_);
-    Box box;
-    box.include(from);
-    box.include(from + stretch * direction);
-    visit_images(box, [&](const Cell& cell, const Vec3& shift) {
-      const Vec3 to_centre = cell.centre + shift - from;
-      const double along = glm::dot(to_centre, direction);
-      const Vec3 aside = to_centre - along * direction;
-      if (glm::dot(aside, aside) > cell.radius * cell.radius) return;
-      double entry = -1e300;
-      double exit = 1e300;
-      const Polytope::Face* last = nullptr;
-      for (const Polytope::Face& face : cell.shape.faces) {
-        const double slope = glm::dot(face.plane.normal, direction);
-        const double height = face.plane.distance(from - shift);
-        if (slope > 0.0) {
-          if (-height < exit * slope) {
-            exit = -height / slope;
-            last = &face;
-          }
-        } else if (slope < 0.0) {
-          entry = std::max(entry, -height / slope);
-        } else if (height > 0.0) {
-          return;
-        }
+  if (repeats_) {
+    for (double begun = 0.0; begun < length; begun += side_) {
+      const Vec3 far = start + begun * direction;
+      for (Crossing& crossing : stretch(far - side_ * glm::floor(far / side_), direction, std::min(side_, length - begun))) {
+        crossing.at += begun;
+        result.push_back(crossing);
       }
-      if (last && entry < exit && exit >= 0.0 && exit < stretch)
-        result.push_back({begun + exit, last->joint, last->plane.normal});
-    });
+    }
+  } else {
+    result = stretch(start - across * direction, direction, 2.0 * across);
   }
   std::sort(result.begin(), result.end(), [](const Crossing& a, const Crossing& b) { return a.at < b.at; });
+  return result;
+}
+
+std::vector<Crossing> RockCells::stretch(const Vec3& from, const Vec3& direction, double length) const {
+  std::vector<Crossing> result;
+  Box box;
+  box.include(from);
+  box.include(from + length * direction);
+  visit_images(box, [&](const Cell& cell, const Vec3& shift) {
+    const Vec3 to_centre = cell.centre + shift - from;
+    const Vec3 aside = to_centre - glm::dot(to_centre, direction) * direction;
+    if (glm::dot(aside, aside) > cell.radius * cell.radius) return;
+    double entry = -1e300;
+    double exit = 1e300;
+    const Polytope::Face* last = nullptr;
+    for (const Polytope::Face& face : cell.shape.faces) {
+      const double slope = glm::dot(face.plane.normal, direction);
+      const double height = face.plane.distance(from - shift);
+      if (slope > 0.0) {
+        if (-height < exit * slope) {
+          exit = -height / slope;
+          last = &face;
+        }
+      } else if (slope < 0.0) {
+        entry = std::max(entry, -height / slope);
+      } else if (height > 0.0) {
+        return;
+      }
+    }
+    if (last && entry < exit && exit >= 0.0 && exit < length) result.push_back({exit, last->joint, last->plane.normal});
+  });
   return result;
 }
 

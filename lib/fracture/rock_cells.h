@@ -18,7 +18,7 @@ struct Crossing {
   Vec3 normal{0.0};     ///< Of the face.
 };
 
-/// Blocks grown by half the aperture: cells that fill the torus, with faces that neighbours share.
+/// Blocks grown by half the aperture: cells that fill the torus, or the box, with faces that neighbours share.
 class RockCells {
  public:
   explicit RockCells(const Tile& tile);
@@ -32,13 +32,18 @@ class RockCells {
 
   [[nodiscard]] const std::vector<Cell>& cells() const noexcept { return cells_; }
   [[nodiscard]] double side() const noexcept { return side_; }
-  /// Of the torus, m³.
+  [[nodiscard]] bool repeats() const noexcept { return repeats_; }
+  /// Of the torus or box, m³.
   [[nodiscard]] double volume() const noexcept { return side_ * side_ * side_; }
 
   /// Calls visit(cell, shift) for every image of a cell (moved by `shift`) whose bounds meet the box.
   template <class Visit>
   void visit_images(const Box& box, Visit&& visit) const {
     for (const Cell& cell : cells_) {
+      if (!repeats_) {
+        if (cell.bounds.overlaps(box)) visit(cell, Vec3(0.0));
+        continue;
+      }
       const Vec3 lo = glm::ceil((box.lo - cell.bounds.hi) / side_);
       const Vec3 hi = glm::floor((box.hi - cell.bounds.lo) / side_);
       for (double z = lo.z; z <= hi.z; ++z)
@@ -47,12 +52,16 @@ class RockCells {
     }
   }
 
-  /// The joints that a line meets, in order: from `start` along the unit vector `direction`, around the torus.
+  /// The joints that a line meets, in order: from `start` along the unit vector `direction`, around the torus. In a box:
+  /// all those on the line through `start`, and last the wall.
   /// Cost: O(cells) for each side's length.
   [[nodiscard]] std::vector<Crossing> crossings(const Vec3& start, const Vec3& direction, double length) const;
 
  private:
+  [[nodiscard]] std::vector<Crossing> stretch(const Vec3& from, const Vec3& direction, double length) const;
+
   double side_;
+  bool repeats_;
   std::vector<Cell> cells_;
 };
 

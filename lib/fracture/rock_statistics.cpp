@@ -57,9 +57,9 @@ std::string group_name(const Tile& tile, int set) {
 
 // All joints along parallel lines. @param rate  Joints a metre that are looked for.
 std::vector<std::vector<Crossing>> scan(const RockCells& rock, const Vec3& direction, double rate, const Task& task) {
-  const double a_line = std::max(1.0, rate * kLineSides * rock.side());
+  const double a_line = std::max(1.0, rate * (rock.repeats() ? kLineSides : 1.0) * rock.side());
   return parallel_map(
-      static_cast<std::size_t>(std::clamp(kJointsToMeet / a_line, kLeastLines, kMostLines)),
+      static_cast<std::size_t>(std::clamp(kJointsToMeet / a_line, kLeastLines, rock.repeats() ? kMostLines : kLineSides * kMostLines)),
       [&](std::size_t i) {
         // Evenly spread starts: lines along a side of the tile meet the same joints in each of its copies.
         const Vec3 start = rock.side() * glm::fract(0.5 + static_cast<double>(i) * kSpread);
@@ -86,7 +86,7 @@ void measure_spacing(SetStatistics& set, const Tile& tile, const RockCells& rock
   double squares = 0.0;
   for (const std::vector<Crossing>& line : scan(rock, set.orientation.mean, set.p32, task))
     for (const double s :
-         spacings(line, rock.side(), [&](const Crossing& c) { return set_of(tile, c.joint) == set.set; })) {
+         spacings(line, rock.side(), [&](const Crossing& c) { return c.joint != kWall && set_of(tile, c.joint) == set.set; })) {
       sum += s;
       squares += s * s;
       ++set.spacings;
@@ -128,6 +128,7 @@ std::vector<SetStatistics> measure_sets(const Tile& tile, const RockCells& rock,
   std::vector<bool> is_seen(tile.discs.size(), false);
   for (const RockCells::Cell& cell : rock.cells())
     for (const Polytope::Face& face : cell.shape.faces) {
+      if (face.joint == kWall) continue;
       const FaceMeasure m = measure(cell.shape, face);
       Group& group = groups[set_of(tile, face.joint)];
       group.area += 0.5 * m.area;
@@ -211,6 +212,7 @@ void measure_blocks(RockStatistics& rock, const Tile& tile) {
 void measure_lines(RockStatistics& rock, const RockCells& cells, const Task& task) {
   for (const RockCells::Cell& cell : cells.cells())
     for (const Polytope::Face& face : cell.shape.faces) {
+      if (face.joint == kWall) continue;
       const FaceMeasure m = measure(cell.shape, face);
       for (int axis = 0; axis < 3; ++axis)
         rock.joints_per_metre[static_cast<std::size_t>(axis)] += 0.5 * m.area * std::abs(m.normal[axis]) / cells.volume();
@@ -218,7 +220,7 @@ void measure_lines(RockStatistics& rock, const RockCells& cells, const Task& tas
   double sound = 0.0;
   double all = 0.0;
   for (const std::vector<Crossing>& line : scan(cells, {0, 0, 1}, rock.joints_per_metre[2], task))
-    for (const double s : spacings(line, cells.side(), [](const Crossing&) { return true; })) {
+    for (const double s : spacings(line, cells.side(), [](const Crossing& c) { return c.joint != kWall; })) {
       all += s;
       if (s >= kSoundPiece) sound += s;
     }

@@ -226,6 +226,7 @@ Tile make_tile(const TileOptions& options, Seed seed, const Task& task) {
   tile.side = options.side;
   tile.type = options.type;
   tile.aperture = options.aperture;
+  tile.domain = options.domain;
   tile.sets = pattern.sets;
   tile.discs = discs_as_cut(clusters.discs, clusters.list);
   tile.blocks = parallel_map(

@@ -66,6 +66,7 @@ std::vector<Pole> poles_of(const Tile& tile, const RockCells& rock) {
   std::vector<Pole> poles;
   for (const RockCells::Cell& cell : rock.cells())
     for (const Polytope::Face& face : cell.shape.faces) {
+      if (face.joint == kWall) continue;
       const FaceMeasure m = measure(cell.shape, face);
       if (face.joint >= 0)
         areas[static_cast<std::size_t>(face.joint)] += 0.5 * m.area;
@@ -112,7 +113,7 @@ std::string_view set_colour(int set) {
   // Okabe and Ito's palette: told apart by colour-blind eyes.
   constexpr std::array<std::string_view, 6> kSets{"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"};
   if (set >= 0) return kSets[static_cast<std::size_t>(set) % kSets.size()];
-  if (set == kColumnJoint) return "#56b4e9";
+  if (set == kColumnJoint) return "#e69f00";
   return set == kAddedJoint ? "#999999" : "#666666";
 }
 

@@ -105,6 +105,7 @@ std::vector<Trace> trace_map(const Tile& tile, const RockCells& rock, const CutP
     const Plane plane{normal, -glm::dot(normal, cut.origin - shift)};
     if (std::abs(plane.distance(cell.centre)) > cell.radius) return;
     for (const Polytope::Face& face : cell.shape.faces) {
+      if (face.joint == kWall) continue;
       // Each joint lies between two cells: the one that it bounds on the right, or above, tells of it.
       Vec2 n(glm::dot(face.plane.normal, cut.u), glm::dot(face.plane.normal, cut.v));
       if (n.x < -1e-12 || (n.x < 1e-12 && n.y <= 0.0)) continue;
