@@ -9,6 +9,7 @@
 #include <glm/vector_relational.hpp>
 
 #include "material_reader.h"
+#include "outcrop/amplify/tile_reports.h"
 #include "outcrop/core/json.h"
 #include "outcrop/fracture/tile.h"
 #include "outcrop/implicit/combine.h"
@@ -229,7 +230,9 @@ FieldPtr read_label(JsonReader& reader, const Context& context) {
 FieldPtr read_tile(JsonReader& reader, const Context& context) {
   const double explode = reader.number("explode", 1.0, {1.0, 100.0});
   const int seed = reader.integer("seed", 1, 0, std::numeric_limits<int>::max());
-  const RockMaterial material = read_material(reader, context.folder, TileOptions{}.side);
+  const RockMaterial material = meet_target(read_material(reader, context.folder, TileOptions{}.side),
+                                            TileOptions{}.side, static_cast<Seed>(seed), context.task)
+                                    .material;
   const TileOptions options = tile_options(material, TileOptions{}.side);
   const Tile tile = make_tile(options, static_cast<Seed>(seed), context.task);
   Warp warp;

@@ -75,7 +75,7 @@ std::string shown_class(std::string_view words) { return " (" + std::string(word
 }  // namespace
 
 TileReport tile_report(const Tile& tile, std::string title, std::vector<std::string> notes, const Task& task) {
-  return {std::move(title), std::move(notes), measure_rock(tile, task), classify(tile)};
+  return {std::move(title), std::move(notes), tile.type, measure_rock(tile, task), classify(tile)};
 }
 
 std::string tile_figure_svg(const Tile& tile, const TileReport& report) {
@@ -156,12 +156,12 @@ std::string tile_figure_html(const std::vector<std::string>& svg_pages, const st
   return html + "</body>\n</html>\n";
 }
 
-void write_tile_report(JsonWriter& json, const Tile& tile, const TileReport& report) {
-  json.value("name", report.title).value("block_type", name(tile.type)).value("tile_side", tile.side);
+void write_tile_report(JsonWriter& json, const TileReport& report) {
+  json.value("name", report.title).value("block_type", name(report.asked)).value("tile_side", report.statistics.side);
   json.begin_array("notes");
   for (const std::string& note : report.notes) json.item(note);
   json.end_array();
-  json.value("tile_blocks", static_cast<double>(tile.blocks.size()));
+  json.value("tile_blocks", static_cast<double>(report.statistics.blocks.size()));
   const Classification& found = report.found;
   json.begin_object("found").value("block_type", name(found.type)).value("set_share", found.set_share);
   json.value("square_share", found.square_share).value("prism_share", found.prism_share);

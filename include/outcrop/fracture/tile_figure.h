@@ -16,6 +16,7 @@ class JsonWriter;
 struct TileReport {
   std::string title = "Rock";       ///< The material's name.
   std::vector<std::string> notes;   ///< Lines under the title: what was asked for, seed, targets.
+  BlockType asked = BlockType::Equidimensional;
   RockStatistics statistics;
   Classification found;
 };
@@ -31,6 +32,6 @@ struct TileReport {
 [[nodiscard]] std::string tile_figure_html(const std::vector<std::string>& svg_pages, const std::string& title);
 
 /// Writes the members of an open JSON object: what was asked, what was measured, what was found. docs/formats.md.
-void write_tile_report(JsonWriter& json, const Tile& tile, const TileReport& report);
+void write_tile_report(JsonWriter& json, const TileReport& report);
 
 }  // namespace outcrop
