@@ -200,3 +200,31 @@ def read_maps(data):
         sets += [s] * len(more)
     maps.append(Map("Pontrelli", lines, sets, shapefile_lines(folder / "Interpretation_boundary.shp")))
     return maps
+
+
+# --- from a map to joint sets -----------------------------------------------------------------------------------------
+def derive(outcrop):
+    """Joint sets of a material. The joints are taken as upright, so that P32 is the map's P21; a power law of radii has
+    an exponent one above that of its traces' lengths; joints along the ground, which no map shows, are assumed."""
+    sets, spacing_sum = [], []
+    for s in sorted(set(outcrop.sets)):
+        m = outcrop.measure(s)
+        lengths = outcrop.lengths[outcrop.sets == s]
+        tail = lengths[lengths >= m["median"]]
+        exponent = 1.0 / np.log(tail / m["median"]).mean() + 1.0  # Hill's estimator, and the cut
+        joint_set = {"name": f"{m['azimuth']:03.0f}" if s >= 0 else "random",
+                     "dip_deg": 90.0, "dip_direction_deg": round((m["azimuth"] + 90.0) % 360.0, 1),
+                     "kappa": round(math.radians(m["scatter"]) ** -2, 1) if s >= 0 else 1.0,
+                     "p32": round(m["p21"] * (1.0 if s >= 0 else 4.0 / math.pi), 4),
+                     "radius_law": "power_law", "radius_exponent": round(min(exponent, 4.0), 2)}
+        sets.append((s, joint_set))
+        if s >= 0:
+            spacing_sum.append(m["spacing"])
+    spacing = float(np.mean(spacing_sum))
+    side = round(12.0 * spacing, 1)
+    for s, joint_set in sets:
+        median = float(np.median(outcrop.lengths[outcrop.sets == s]))
+        joint_set["radius"] = [round(0.25 * median, 3), round(0.5 * side, 2)]
+    level = {"name": "level", "dip_deg": 0.0, "dip_direction_deg": 0.0, "kappa": 100.0, "p32": round(0.5 / spacing, 4),
+             "radius_law": "power_law", "radius_exponent": 2.0, "radius": [round(spacing, 2), round(0.5 * side, 2)]}
+    return [joint_set for _, joint_set in sets if joint_set["p32"] > 0.0] + [level], side
