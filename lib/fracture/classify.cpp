@@ -17,7 +17,7 @@ constexpr double kAcrossCosine = 0.3420201433256687;  // 20° from across.
 constexpr std::size_t kMostFaces = 2000;              // More do not tell more.
 constexpr std::size_t kMostCones = 5;
 
-// Thresholds between the types; the gaps between the types' figures are in docs/decisions/fracture.md.
+// Thresholds between the types; the figures of the types are in docs/decisions/rock_statistics.md.
 constexpr double kSets = 0.645;          // Least set_share of rock with joint sets.
 constexpr double kColumnSets = 0.79;     // Most of columns, whose sides have many directions.
 constexpr double kPrism = 0.9;           // Least prism_share of columns.
