@@ -8,7 +8,7 @@
 namespace outcrop {
 namespace {
 
-constexpr double kAzimuth = radians(215.0);  // Where the viewer stands, clockwise from north.
+constexpr double kAzimuth = radians(150.0);  // Where the viewer stands, clockwise from north.
 constexpr double kHeight = radians(28.0);    // Above the horizon.
 constexpr std::size_t kMostSorted = 1500;    // Blocks; more are drawn in the order of their depth.
 constexpr double kShell = 3.0;               // Mean block sizes: blocks deeper in the tile are hidden.
@@ -144,13 +144,13 @@ void draw_blocks(Svg& svg, const Frame& frame, const Tile& tile) {
   const Vec2 foot = frame.corner + Vec2(10.0, frame.size.y - 8.0);
   svg.line(foot, foot + Vec2(bar * scale, 0.0), {.stroke = "#222", .width = 2.5});
   svg.text(foot + Vec2(bar * scale + 6.0, 4.0), short_number(bar) + " m across the view", {.size = 11});
-  const Vec2 compass = frame.corner + Vec2(frame.size.x - 46.0, frame.size.y - 22.0);
+  const Vec2 compass = frame.corner + Vec2(frame.size.x - 46.0, frame.size.y - 26.0);
   const std::array<std::pair<Vec3, const char*>, 3> axes{
       std::pair{Vec3(1, 0, 0), "E"}, std::pair{Vec3(0, 1, 0), "N"}, std::pair{Vec3(0, 0, 1), "up"}};
   for (const auto& [axis, label] : axes) {
-    const Vec2 tip = 22.0 * view.flat(axis);
+    const Vec2 tip = 30.0 * view.flat(axis);
     svg.line(compass, compass + tip, {.stroke = "#222", .width = 1.3});
-    svg.text(compass + 1.35 * tip + Vec2(0.0, 4.0), label, {.size = 10, .anchor = "middle"});
+    svg.text(compass + 1.3 * tip + Vec2(0.0, 4.0), label, {.size = 10, .anchor = "middle"});
   }
 }
 

@@ -229,7 +229,7 @@ void draw_shapes(Svg& svg, const Frame& frame, const RockStatistics& rock) {
     }
     if (curve.size() < 2) continue;
     svg.polyline(curve, {.stroke = "#999999", .width = 0.8, .dash = "2 3"});
-    const bool is_at_top = curve.back().y < plot.corner.y + 12.0;
+    const bool is_at_top = curve.back().y < plot.corner.y + 30.0;
     svg.text(curve.back() + (is_at_top ? Vec2(4, 28) : Vec2(3, -3)), "β " + short_number(beta), {.size = 9.5, .fill = "#777"});
   }
   const double two = std::log10(2.0);

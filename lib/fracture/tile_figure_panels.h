@@ -17,7 +17,7 @@ struct Frame {
 /// The colour of a joint set, or of a group of joints without one; six sets have their own, then they repeat.
 [[nodiscard]] std::string_view set_colour(int set);
 
-/// Blocks as made, seen from above and the south-west, faces coloured by joint set; a scale bar.
+/// Blocks as made, seen from above and the south-south-east, faces coloured by joint set; a scale bar.
 void draw_blocks(Svg& svg, const Frame& frame, const Tile& tile);
 /// Poles of joints (equal area, lower hemisphere), means of sets with their planes.
 void draw_stereonet(Svg& svg, const Frame& frame, const Tile& tile, const RockCells& rock, const TileReport& report);
