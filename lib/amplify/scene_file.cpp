@@ -230,7 +230,8 @@ FieldPtr read_label(JsonReader& reader, const Context& context) {
 FieldPtr read_tile(JsonReader& reader, const Context& context) {
   const double explode = reader.number("explode", 1.0, {1.0, 100.0});
   const int seed = reader.integer("seed", 1, 0, std::numeric_limits<int>::max());
-  const RockMaterial material = meet_target(read_material(reader, context.folder, TileOptions{}.side),
+  const StrataFile upright{.placement = {.lattice_azimuth = 0.0}};
+  const RockMaterial material = meet_target(read_material(reader, context.folder, TileOptions{}.side), upright,
                                             TileOptions{}.side, static_cast<Seed>(seed), context.task)
                                     .material;
   const TileOptions options = tile_options(material, TileOptions{}.side);

@@ -106,7 +106,7 @@ std::array<Vec3, 3> square_frame(const Faces& faces, const std::vector<Cone>& co
         best = frame;
       }
     }
-  share = std::max(share, 0.0);
+  share = std::clamp(share, 0.0, 1.0);
   return best;
 }
 
@@ -138,8 +138,9 @@ Classification classify(const Tile& tile) {
   const std::vector<Cone> cones = heaviest_cones(faces);
   Classification result;
   for (std::size_t i = 0; i < std::min<std::size_t>(3, cones.size()); ++i) result.set_share += cones[i].area;
+  result.set_share = std::min(1.0, result.set_share);
   const std::array<Vec3, 3> frame = square_frame(faces, cones, result.square_share);
-  result.prism_share = prism_share(faces, cones);
+  result.prism_share = std::min(1.0, prism_share(faces, cones));
 
   const auto n = static_cast<double>(tile.blocks.size());
   std::array<double, 3> extents{};  // logarithms

@@ -32,7 +32,9 @@ std::string listed(double volume, double jv, double rqd) {
   return "block_volume " + short_number(volume) + " m³, jv " + short_number(jv) + " 1/m, rqd " + short_number(rqd) + " %";
 }
 
-std::string asked(const RockTarget& target) {
+}  // namespace
+
+std::string described(const RockTarget& target) {
   std::string text;
   const auto add = [&](const std::optional<double>& v, const char* name, const char* unit) {
     if (v) text += (text.empty() ? "" : ", ") + std::string(name) + " " + short_number(*v) + unit;
@@ -42,8 +44,6 @@ std::string asked(const RockTarget& target) {
   add(target.rqd, "rqd", " %");
   return text;
 }
-
-}  // namespace
 
 TileOptions scaled(TileOptions options, double factor) {
   require(std::isfinite(factor) && factor > 0.0, "factor", "> 0 and finite", factor);
@@ -95,7 +95,7 @@ TargetedTile fit_tile(const TileOptions& options, const RockTarget& target, Seed
   if (target.block_volume && misses(result.block_volume, *target.block_volume, kVolumeSlack)) result.is_met = false;
   if (target.jv && misses(result.jv, *target.jv, kJvSlack)) result.is_met = false;
   if (target.rqd && misses(result.jv, jv_of_rqd(*target.rqd), kJvSlack)) result.is_met = false;
-  result.note = asked(target) + " asked for: tile_side " + short_number(result.options.side) + ", which makes " +
+  result.note = described(target) + " asked for: tile_side " + short_number(result.options.side) + ", which makes " +
                 listed(result.block_volume, result.jv, result.rqd);
   if (!result.is_met && wishes > 1)
     result.note += "; blocks of this shape (β " + short_number(rock.beta) + ") cannot have all of it, this is the nearest";

@@ -74,8 +74,12 @@ std::string shown_class(std::string_view words) { return " (" + std::string(word
 
 }  // namespace
 
-TileReport tile_report(const Tile& tile, std::string title, std::vector<std::string> notes, const Task& task) {
-  return {std::move(title), std::move(notes), tile.type, measure_rock(tile, task), classify(tile)};
+TileReport tile_report(const Tile& tile, std::string title, std::vector<std::string> notes, const Mat3& map_from_tile,
+                       const Task& task) {
+  TileReport report{std::move(title), std::move(notes), tile.type, map_from_tile, measure_rock(tile, task),
+                    classify(tile)};
+  for (SetStatistics& set : report.statistics.sets) set.orientation.mean = map_from_tile * set.orientation.mean;
+  return report;
 }
 
 std::string tile_figure_svg(const Tile& tile, const TileReport& report) {
@@ -95,17 +99,17 @@ std::string tile_figure_svg(const Tile& tile, const TileReport& report) {
   const double right = kMargin + half + kMargin;
   heading(svg, {kMargin, y}, half, "Blocks, faces coloured by joint set");
   heading(svg, {right, y}, half, "Orientation of joints");
-  draw_blocks(svg, {{kMargin, y + 16.0}, {half, 450.0}}, tile);
+  draw_blocks(svg, {{kMargin, y + 16.0}, {half, 450.0}}, tile, report.map_from_tile);
   draw_stereonet(svg, {{right, y + 16.0}, {half, 450.0}}, tile, cells, report);
   y += 505.0;
 
   const double third = (kPage.x - 2.0 * kMargin - 48.0) / 3.0;
-  const std::array<const char*, 3> titles{"Block volumes", "Block shapes", "Traces on a level cut"};
+  const std::array<const char*, 3> titles{"Block volumes", "Block shapes", "Traces along the bedding"};
   for (std::size_t i = 0; i < 3; ++i)
     heading(svg, {kMargin + static_cast<double>(i) * (third + 24.0), y}, third, titles[i]);
   draw_volumes(svg, {{kMargin, y + 16.0}, {third, third}}, rock);
   draw_shapes(svg, {{kMargin + third + 24.0, y + 16.0}, {third, third}}, rock);
-  draw_traces(svg, {{kMargin + 2.0 * (third + 24.0), y + 16.0}, {third, third}}, tile, cells);
+  draw_traces(svg, {{kMargin + 2.0 * (third + 24.0), y + 16.0}, {third, third}}, tile, cells, report.map_from_tile);
   y += third + 62.0;
 
   heading(svg, {kMargin, y}, kPage.x - 2.0 * kMargin, "Joint sets, as found in the tile");
@@ -129,11 +133,11 @@ std::string tile_figure_svg(const Tile& tile, const TileReport& report) {
       {"Jv, 1/m", number(rock.jv) + shown_class(jv_class(rock.jv) == "medium" ? "medium-sized blocks"
                                                                              : std::string(jv_class(rock.jv)) + " blocks")},
       {"P32 of all joints, 1/m", number(rock.p32)},
-      {"joints a metre along east, north, up", number(rock.joints_per_metre[0]) + ", " +
+      {"joints a metre along the tile's x, y, z", number(rock.joints_per_metre[0]) + ", " +
                                                    number(rock.joints_per_metre[1]) + ", " +
                                                    number(rock.joints_per_metre[2])},
       {"RQD = 110 − 2.5 Jv; 115 − 3.3 Jv", number(rock.rqd_2005) + " %; " + number(rock.rqd_1982) + " %"},
-      {"RQD on upright lines: Priest-Hudson; measured",
+      {"RQD across the bedding: Priest-Hudson; measured",
        number(rock.rqd_priest_hudson) + " %; " + number(rock.rqd_measured) + " %"},
       {"type that the blocks show", std::string(name(report.found.type))},
       {"face area in three sets; in three square ones",

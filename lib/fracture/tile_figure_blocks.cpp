@@ -96,7 +96,7 @@ std::string shaded(std::string_view colour, double light, double tone) {
 
 }  // namespace
 
-void draw_blocks(Svg& svg, const Frame& frame, const Tile& tile) {
+void draw_blocks(Svg& svg, const Frame& frame, const Tile& tile, const Mat3& map_from_tile) {
   const View view;
   const double deep = kShell * std::cbrt(std::pow(tile.side, 3.0) / static_cast<double>(tile.blocks.size()));
   std::vector<Solid> solids;
@@ -148,7 +148,7 @@ void draw_blocks(Svg& svg, const Frame& frame, const Tile& tile) {
   const std::array<std::pair<Vec3, const char*>, 3> axes{
       std::pair{Vec3(1, 0, 0), "E"}, std::pair{Vec3(0, 1, 0), "N"}, std::pair{Vec3(0, 0, 1), "up"}};
   for (const auto& [axis, label] : axes) {
-    const Vec2 tip = 30.0 * view.flat(axis);
+    const Vec2 tip = 30.0 * view.flat(glm::transpose(map_from_tile) * axis);
     svg.line(compass, compass + tip, {.stroke = "#222", .width = 1.3});
     svg.text(compass + 1.3 * tip + Vec2(0.0, 4.0), label, {.size = 10, .anchor = "middle"});
   }

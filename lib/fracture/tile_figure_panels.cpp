@@ -131,7 +131,7 @@ void draw_stereonet(Svg& svg, const Frame& frame, const Tile& tile, const RockCe
   const std::vector<Pole> poles = poles_of(tile, rock);
   const double largest = poles.empty() ? 1.0 : poles[0].area;
   for (const Pole& pole : poles)
-    svg.circle(centre + radius * projected(pole.normal), 1.5 + 3.5 * std::sqrt(pole.area / largest),
+    svg.circle(centre + radius * projected(report.map_from_tile * pole.normal), 1.5 + 3.5 * std::sqrt(pole.area / largest),
                {.fill = set_colour(pole.set), .stroke = "#ffffff", .width = 0.4, .opacity = 0.75});
   double y = frame.corner.y + 26.0;
   const double x = centre.x + radius + 28.0;
@@ -258,7 +258,7 @@ void draw_shapes(Svg& svg, const Frame& frame, const RockStatistics& rock) {
            {.size = 11, .anchor = "middle", .turn_deg = -90});
 }
 
-void draw_traces(Svg& svg, const Frame& frame, const Tile& tile, const RockCells& rock) {
+void draw_traces(Svg& svg, const Frame& frame, const Tile& tile, const RockCells& rock, const Mat3& map_from_tile) {
   const double size = std::min(frame.size.x - 10.0, frame.size.y - 44.0);
   const Vec2 corner = frame.corner + Vec2(0.5 * (frame.size.x - size), 6.0);
   const CutPlane cut{.origin = Vec3(0, 0, 0.5 * tile.side), .width = tile.side, .height = tile.side};
@@ -270,8 +270,13 @@ void draw_traces(Svg& svg, const Frame& frame, const Tile& tile, const RockCells
   }
   svg.rect(corner, Vec2(size), {.stroke = kInk, .width = 1.0});
   svg.text(corner + Vec2(0.5 * size, size + 16.0),
-           short_number(tile.side) + " m, north is up; P21 " + short_number(intensity_p21(traces, cut)) + " 1/m",
+           short_number(tile.side) + " m wide; P21 " + short_number(intensity_p21(traces, cut)) + " 1/m",
            {.size = 11, .anchor = "middle"});
+  const Vec3 north = glm::transpose(map_from_tile) * Vec3(0, 1, 0);
+  const Vec2 foot = corner + Vec2(size - 14.0, size + 24.0);
+  const Vec2 tip = foot + 18.0 * Vec2(north.x, -north.y);
+  svg.line(foot, tip, {.stroke = kInk, .width = 1.3});
+  svg.text(tip + 6.0 * Vec2(north.x, -north.y) + Vec2(0, 4), "N", {.size = 10, .anchor = "middle"});
 }
 
 }  // namespace outcrop

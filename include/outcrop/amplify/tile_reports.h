@@ -18,7 +18,9 @@ struct SizedMaterial {
 
 /// Finds the tile side (and with it all other lengths) of a material that asks for a block volume, Jv or RQD; others stay
 /// as they are. Cost: a tile where there is a target.
-[[nodiscard]] SizedMaterial meet_target(RockMaterial material, double default_side, Seed seed, const Task& task = {});
+/// @param file  How its tiles lie: those of the materials that stand in it.
+[[nodiscard]] SizedMaterial meet_target(RockMaterial material, const StrataFile& file, double default_side, Seed seed,
+                                        const Task& task = {});
 
 /// Materials whose targets have become lengths.
 struct SizedStrata {

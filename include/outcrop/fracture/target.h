@@ -35,6 +35,9 @@ struct TargetedTile {
 [[nodiscard]] TargetedTile fit_tile(const TileOptions& options, const RockTarget& target, Seed seed,
                                     const Task& task = {});
 
+/// "block_volume 2.5 m³, jv 6 1/m": one line for people.
+[[nodiscard]] std::string described(const RockTarget& target);
+
 /// The options with all lengths multiplied; `factor` > 0.
 [[nodiscard]] TileOptions scaled(TileOptions options, double factor);
 

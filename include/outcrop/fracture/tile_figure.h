@@ -17,13 +17,15 @@ struct TileReport {
   std::string title = "Rock";       ///< The material's name.
   std::vector<std::string> notes;   ///< Lines under the title: what was asked for, seed, targets.
   BlockType asked = BlockType::Equidimensional;
+  Mat3 map_from_tile{1.0};          ///< Turns orientations into the map's axes for the table and the stereonet.
   RockStatistics statistics;
   Classification found;
 };
 
 /// Measures and classifies a tile. Cost: as measure_rock and classify.
+/// @param map_from_tile  How the tile lies in the map, a rotation: means of sets are reported there.
 [[nodiscard]] TileReport tile_report(const Tile& tile, std::string title, std::vector<std::string> notes,
-                                     const Task& task = {});
+                                     const Mat3& map_from_tile = Mat3(1.0), const Task& task = {});
 
 /// One page as SVG, 1000 x 1414 pixels: picture of the blocks, stereonet (poles, equal area, lower hemisphere), volume
 /// distribution by number and by volume, shape diagram, a horizontal trace map, and tables of the numbers.
