@@ -30,17 +30,20 @@ int main(int argc, char** argv) {
     if (!with_figures) continue;
     const struct {
       const char* what;
-      double Classification::*value;
-    } figures[] = {{"sets", &Classification::set_share},          {"square", &Classification::square_share},
-                   {"prism", &Classification::prism_share},       {"elongation", &Classification::elongation},
+      double Classification::* value;
+    } figures[] = {{"sets", &Classification::set_share},
+                   {"square", &Classification::square_share},
+                   {"prism", &Classification::prism_share},
+                   {"elongation", &Classification::elongation},
                    {"fabric elongation", &Classification::fabric_elongation},
                    {"fabric flatness", &Classification::fabric_flatness}};
     for (const auto& figure : figures) {
       std::vector<double> values;
       for (const Classification& c : found) values.push_back(c.*figure.value);
       std::sort(values.begin(), values.end());
-      std::fprintf(stderr, "  %-18s least %.2f  5 %% %.2f  median %.2f  95 %% %.2f  greatest %.2f\n", figure.what, values[0],
-                   values[values.size() / 20], values[values.size() / 2], values[values.size() * 19 / 20], values.back());
+      std::fprintf(stderr, "  %-18s least %.2f  5 %% %.2f  median %.2f  95 %% %.2f  greatest %.2f\n", figure.what,
+                   values[0], values[values.size() / 20], values[values.size() / 2], values[values.size() * 19 / 20],
+                   values.back());
     }
   }
   std::printf("\nThe type asked for is given back in at least %d of %d seeds.\n", least, seeds);

@@ -21,13 +21,9 @@ int main(int argc, char** argv) {
     options.domain = Domain::Box;
     const Tile tile = make_tile(options, std::strtoull(argv[2], nullptr, 10));
     std::printf("# blocks %zu, seconds %.1f\n", tile.blocks.size(), tile.statistics.seconds);
-    for (std::size_t s = 0; s < tile.sets.size(); ++s)
-      std::printf("# p32 %s %.6g %.6g\n", tile.sets[s].name.c_str(), tile.statistics.intensities[s].asked,
-                  tile.statistics.intensities[s].made);
     const int levels = std::atoi(argv[3]);
     for (int i = 0; i < levels; ++i) {
-      const CutPlane cut{
-          .origin = Vec3(0, 0, (i + 0.5) / levels * tile.side), .width = tile.side, .height = tile.side};
+      const CutPlane cut{.origin = Vec3(0, 0, (i + 0.5) / levels * tile.side), .width = tile.side, .height = tile.side};
       std::printf("# level %d\n%s", i, trace_table(tile, trace_map(tile, cut)).c_str());
     }
   } catch (const std::exception& error) {

@@ -13,8 +13,7 @@ namespace outcrop {
 SizedMaterial meet_target(RockMaterial material, const StrataFile& file, double default_side, Seed seed,
                           const Task& task) {
   if (!material.target.any()) return {std::move(material), {}};
-  const TargetedTile fitted =
-      fit_tile(tile_options(material, default_side, lie_of(file)), material.target, seed, task);
+  const TargetedTile fitted = fit_tile(tile_options(material, default_side, lie_of(file)), material.target, seed, task);
   if (material.joints) material.joints = scaled(tile_options(material, default_side), fitted.scale).pattern;
   material.tile_side = fitted.options.side;
   // What stands at its default (0) follows the side by itself.
@@ -44,10 +43,9 @@ void write_tile_reports(const std::vector<std::filesystem::path>& paths, const S
   for (std::size_t m = 0; m < file.materials.size(); ++m) {
     const RockMaterial& material = file.materials[m];
     const Tile tile = make_tile(tile_options(material, default_side, lie), seed + m, task);
-    const std::string asked = "Asked for: " + std::string(name(material.block_type)) +
-                              (material.joints ? ", joint sets of its own" : "") +
-                              (material.target.any() ? ", " + described(material.target) : "") + "; seed " +
-                              std::to_string(seed + m);
+    const std::string asked =
+        "Asked for: " + std::string(name(material.block_type)) + (material.joints ? ", joint sets of its own" : "") +
+        (material.target.any() ? ", " + described(material.target) : "") + "; seed " + std::to_string(seed + m);
     const TileReport report = tile_report(tile, material.name, {asked}, lie.world_from_tile(), task);
     pages.push_back(tile_figure_svg(tile, report));
     json.begin_object();

@@ -18,13 +18,13 @@ constexpr std::size_t kMostFaces = 2000;              // More do not tell more.
 constexpr std::size_t kMostCones = 5;
 
 // Thresholds between the types; the figures of the types are in docs/decisions/rock_statistics.md.
-constexpr double kSets = 0.645;          // Least set_share of rock with joint sets.
-constexpr double kColumnSets = 0.79;     // Most of columns, whose sides have many directions.
-constexpr double kPrism = 0.9;           // Least prism_share of columns.
-constexpr double kColumnLength = 2.0;    // Least elongation of columns.
-constexpr double kTabular = 2.0;         // Least fabric_flatness.
-constexpr double kPrismatic = 1.6;       // Least fabric_elongation.
-constexpr double kSquare = 0.8;          // Least square_share, of the set_share, of sets at right angles.
+constexpr double kSets = 0.645;        // Least set_share of rock with joint sets.
+constexpr double kColumnSets = 0.79;   // Most of columns, whose sides have many directions.
+constexpr double kPrism = 0.9;         // Least prism_share of columns.
+constexpr double kColumnLength = 2.0;  // Least elongation of columns.
+constexpr double kTabular = 2.0;       // Least fabric_flatness.
+constexpr double kPrismatic = 1.6;     // Least fabric_elongation.
+constexpr double kSquare = 0.8;        // Least square_share, of the set_share, of sets at right angles.
 
 /// Face normals with their areas, which sum to 1.
 struct Faces {

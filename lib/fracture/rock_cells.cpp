@@ -33,7 +33,8 @@ std::vector<Crossing> RockCells::crossings(const Vec3& start, const Vec3& direct
   if (repeats_) {
     for (double begun = 0.0; begun < length; begun += side_) {
       const Vec3 far = start + begun * direction;
-      for (Crossing& crossing : stretch(far - side_ * glm::floor(far / side_), direction, std::min(side_, length - begun))) {
+      for (Crossing& crossing :
+           stretch(far - side_ * glm::floor(far / side_), direction, std::min(side_, length - begun))) {
         crossing.at += begun;
         result.push_back(crossing);
       }

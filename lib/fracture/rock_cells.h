@@ -13,9 +13,9 @@ namespace outcrop {
 
 /// Where a line leaves a cell for the next one.
 struct Crossing {
-  double at = 0.0;      ///< Metres along the line.
-  int joint = kWall;    ///< As in Block::plane_joint.
-  Vec3 normal{0.0};     ///< Of the face.
+  double at = 0.0;    ///< Metres along the line.
+  int joint = kWall;  ///< As in Block::plane_joint.
+  Vec3 normal{0.0};   ///< Of the face.
 };
 
 /// Blocks grown by half the aperture: cells that fill the torus, or the box, with faces that neighbours share.
@@ -52,9 +52,8 @@ class RockCells {
     }
   }
 
-  /// The joints that a line meets, in order: from `start` along the unit vector `direction`, around the torus. In a box:
-  /// all those on the line through `start`, and last the wall.
-  /// Cost: O(cells) for each side's length.
+  /// The joints that a line meets, in order: from `start` along the unit vector `direction`, around the torus. In a
+  /// box: all those on the line through `start`, and last the wall. Cost: O(cells) for each side's length.
   [[nodiscard]] std::vector<Crossing> crossings(const Vec3& start, const Vec3& direction, double length) const;
 
  private:

@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-
 #include <glm/common.hpp>
+#include <map>
 
 #include "outcrop/core/error.h"
 #include "outcrop/core/json.h"
@@ -16,14 +15,14 @@
 namespace outcrop {
 namespace {
 
-constexpr double kLineSides = 8.0;       // Length of a scan line, in sides.
-constexpr double kJointsToMeet = 4000.0; // By the scan lines of a set,
-constexpr double kMostLines = 64.0;      // which are no more than this,
-constexpr double kLeastLines = 8.0;      // and no fewer.
+constexpr double kLineSides = 8.0;                                                   // Length of a scan line, in sides.
+constexpr double kJointsToMeet = 4000.0;                                             // By the scan lines of a set,
+constexpr double kMostLines = 64.0;                                                  // which are no more than this,
+constexpr double kLeastLines = 8.0;                                                  // and no fewer.
 constexpr Vec3 kSpread{0.8191725133961645, 0.6710436067037893, 0.5497004779019703};  // Roberts 2018: R₃
-constexpr double kTouching = 1e-6;       // Of the side: nearer crossings are one joint, met where two faces join.
-constexpr double kSoundPiece = 0.1;      // Metres: RQD counts pieces from here on (Deere 1964).
-constexpr int kCuts = 4;                 // Plane cuts along each axis, for traces.
+constexpr double kTouching = 1e-6;   // Of the side: nearer crossings are one joint, met where two faces join.
+constexpr double kSoundPiece = 0.1;  // Metres: RQD counts pieces from here on (Deere 1964).
+constexpr int kCuts = 4;             // Plane cuts along each axis, for traces.
 constexpr double kLeastCutAngle = radians(30.0);  // Between a cut and a set whose traces it shows.
 
 /// The order of groups in a report: sets, random joints, joints without discs.
@@ -32,9 +31,9 @@ struct GroupOrder {
 };
 
 struct Group {
-  double area = 0.0;             // Each joint once.
-  std::vector<Vec3> normals;     // One a disc; one a face where there are none.
-  std::vector<double> weights;   // Areas, where there are no discs.
+  double area = 0.0;            // Each joint once.
+  std::vector<Vec3> normals;    // One a disc; one a face where there are none.
+  std::vector<double> weights;  // Areas, where there are no discs.
   std::vector<FaceMeasure> faces;
 };
 
@@ -59,7 +58,8 @@ std::string group_name(const Tile& tile, int set) {
 std::vector<std::vector<Crossing>> scan(const RockCells& rock, const Vec3& direction, double rate, const Task& task) {
   const double a_line = std::max(1.0, rate * (rock.repeats() ? kLineSides : 1.0) * rock.side());
   return parallel_map(
-      static_cast<std::size_t>(std::clamp(kJointsToMeet / a_line, kLeastLines, rock.repeats() ? kMostLines : kLineSides * kMostLines)),
+      static_cast<std::size_t>(
+          std::clamp(kJointsToMeet / a_line, kLeastLines, rock.repeats() ? kMostLines : kLineSides * kMostLines)),
       [&](std::size_t i) {
         // Evenly spread starts: lines along a side of the tile meet the same joints in each of its copies.
         const Vec3 start = rock.side() * glm::fract(0.5 + static_cast<double>(i) * kSpread);
@@ -85,8 +85,9 @@ void measure_spacing(SetStatistics& set, const Tile& tile, const RockCells& rock
   double sum = 0.0;
   double squares = 0.0;
   for (const std::vector<Crossing>& line : scan(rock, set.orientation.mean, set.p32, task))
-    for (const double s :
-         spacings(line, rock.side(), [&](const Crossing& c) { return c.joint != kWall && set_of(tile, c.joint) == set.set; })) {
+    for (const double s : spacings(line, rock.side(), [&](const Crossing& c) {
+           return c.joint != kWall && set_of(tile, c.joint) == set.set;
+         })) {
       sum += s;
       squares += s * s;
       ++set.spacings;
@@ -151,7 +152,8 @@ std::vector<SetStatistics> measure_sets(const Tile& tile, const RockCells& rock,
     s.orientation = axis_statistics(group.normals, group.weights);
     if (set >= 0 || set == kTierJoint) {
       double met = 0.0;
-      for (const FaceMeasure& face : group.faces) met += 0.5 * face.area * std::abs(glm::dot(face.normal, s.orientation.mean));
+      for (const FaceMeasure& face : group.faces)
+        met += 0.5 * face.area * std::abs(glm::dot(face.normal, s.orientation.mean));
       if (met > 0.0) s.spacing = rock.volume() / met;
       measure_spacing(s, tile, rock, task);
     }
@@ -215,7 +217,8 @@ void measure_lines(RockStatistics& rock, const RockCells& cells, const Task& tas
       if (face.joint == kWall) continue;
       const FaceMeasure m = measure(cell.shape, face);
       for (int axis = 0; axis < 3; ++axis)
-        rock.joints_per_metre[static_cast<std::size_t>(axis)] += 0.5 * m.area * std::abs(m.normal[axis]) / cells.volume();
+        rock.joints_per_metre[static_cast<std::size_t>(axis)] +=
+            0.5 * m.area * std::abs(m.normal[axis]) / cells.volume();
     }
   double sound = 0.0;
   double all = 0.0;

@@ -29,7 +29,8 @@ void check(const RockTarget& target) {
 }
 
 std::string listed(double volume, double jv, double rqd) {
-  return "block_volume " + short_number(volume) + " m³, jv " + short_number(jv) + " 1/m, rqd " + short_number(rqd) + " %";
+  return "block_volume " + short_number(volume) + " m³, jv " + short_number(jv) + " 1/m, rqd " + short_number(rqd) +
+         " %";
 }
 
 }  // namespace
@@ -91,14 +92,17 @@ TargetedTile fit_tile(const TileOptions& options, const RockTarget& target, Seed
   result.jv = rock.jv / result.scale;
   result.rqd = rqd_2005(result.jv);
 
-  const auto misses = [](double reached, double wanted, double slack) { return std::abs(reached / wanted - 1.0) > slack; };
+  const auto misses = [](double reached, double wanted, double slack) {
+    return std::abs(reached / wanted - 1.0) > slack;
+  };
   if (target.block_volume && misses(result.block_volume, *target.block_volume, kVolumeSlack)) result.is_met = false;
   if (target.jv && misses(result.jv, *target.jv, kJvSlack)) result.is_met = false;
   if (target.rqd && misses(result.jv, jv_of_rqd(*target.rqd), kJvSlack)) result.is_met = false;
   result.note = described(target) + " asked for: tile_side " + short_number(result.options.side) + ", which makes " +
                 listed(result.block_volume, result.jv, result.rqd);
   if (!result.is_met && wishes > 1)
-    result.note += "; blocks of this shape (β " + short_number(rock.beta) + ") cannot have all of it, this is the nearest";
+    result.note +=
+        "; blocks of this shape (β " + short_number(rock.beta) + ") cannot have all of it, this is the nearest";
   else if (!result.is_met)
     result.note += "; tiles are 0.1 to 1000 m wide, this is the nearest";
   return result;

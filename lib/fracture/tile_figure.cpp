@@ -37,8 +37,8 @@ void table(Svg& svg, const Vec2& corner, const std::vector<double>& right_edges,
 }
 
 std::vector<std::vector<std::string>> set_rows(const RockStatistics& rock) {
-  std::vector<std::vector<std::string>> rows{{"joints", "number", "dip / direction", "κ̂", "spacing, m", "CV", "P32, 1/m",
-                                              "trace: mean, m", "median, m"}};
+  std::vector<std::vector<std::string>> rows{
+      {"joints", "number", "dip / direction", "κ̂", "spacing, m", "CV", "P32, 1/m", "trace: mean, m", "median, m"}};
   for (const SetStatistics& set : rock.sets) {
     if (rows.size() > 12) {
       rows.push_back({"… and more, see the JSON"});
@@ -76,8 +76,8 @@ std::string shown_class(std::string_view words) { return " (" + std::string(word
 
 TileReport tile_report(const Tile& tile, std::string title, std::vector<std::string> notes, const Mat3& map_from_tile,
                        const Task& task) {
-  TileReport report{std::move(title), std::move(notes), tile.type, map_from_tile, measure_rock(tile, task),
-                    classify(tile)};
+  TileReport report{std::move(title), std::move(notes),         tile.type,
+                    map_from_tile,    measure_rock(tile, task), classify(tile)};
   for (SetStatistics& set : report.statistics.sets) set.orientation.mean = map_from_tile * set.orientation.mean;
   return report;
 }
@@ -120,8 +120,8 @@ std::string tile_figure_svg(const Tile& tile, const TileReport& report) {
   heading(svg, {kMargin, y}, kPage.x - 2.0 * kMargin, "The rock");
   const std::vector<std::vector<std::string>> left_rows{
       {"block volume, m³", ""},
-      {"mean, CV", number(rock.volume_mean) + ", " + number(rock.volume_cv, 2) +
-                       shown_class(volume_class(rock.volume_mean))},
+      {"mean, CV",
+       number(rock.volume_mean) + ", " + number(rock.volume_cv, 2) + shown_class(volume_class(rock.volume_mean))},
       {"D10 / D50 / D90 by number", three(rock.volume_by_number)},
       {"D10 / D50 / D90 by volume", three(rock.volume_by_volume)},
       {"faces a block", number(rock.faces_mean)},
@@ -130,12 +130,13 @@ std::string tile_figure_svg(const Tile& tile, const TileReport& report) {
       {"cracks, overlaps", number(100.0 * rock.gap_share, 2) + " %, " + number(100.0 * rock.overlap_share, 2) + " %"}};
   const std::vector<std::vector<std::string>> right_rows{
       {"joints", ""},
-      {"Jv, 1/m", number(rock.jv) + shown_class(jv_class(rock.jv) == "medium" ? "medium-sized blocks"
-                                                                             : std::string(jv_class(rock.jv)) + " blocks")},
+      {"Jv, 1/m",
+       number(rock.jv) + shown_class(jv_class(rock.jv) == "medium" ? "medium-sized blocks"
+                                                                   : std::string(jv_class(rock.jv)) + " blocks")},
       {"P32 of all joints, 1/m", number(rock.p32)},
       {"joints a metre along the tile's x, y, z", number(rock.joints_per_metre[0]) + ", " +
-                                                   number(rock.joints_per_metre[1]) + ", " +
-                                                   number(rock.joints_per_metre[2])},
+                                                      number(rock.joints_per_metre[1]) + ", " +
+                                                      number(rock.joints_per_metre[2])},
       {"RQD = 110 − 2.5 Jv; 115 − 3.3 Jv", number(rock.rqd_2005) + " %; " + number(rock.rqd_1982) + " %"},
       {"RQD across the bedding: Priest-Hudson; measured",
        number(rock.rqd_priest_hudson) + " %; " + number(rock.rqd_measured) + " %"},
@@ -145,7 +146,8 @@ std::string tile_figure_svg(const Tile& tile, const TileReport& report) {
   table(svg, {kMargin, y + 26.0}, {430}, left_rows);
   table(svg, {right, y + 26.0}, {kPage.x - kMargin - right}, right_rows);
   svg.text({kMargin, kPage.y - 22.0},
-           "Spacing: along the mean normal. Jv: Σ 1 / spacing, and P32 for joints without a set. Classes of Jv: ISRM 1978; of "
+           "Spacing: along the mean normal. Jv: Σ 1 / spacing, and P32 for joints without a set. Classes of Jv: ISRM "
+           "1978; of "
            "volume and β: Palmström 1995.",
            {.size = 10, .fill = "#777"});
   return svg.document(kPage, report.title);

@@ -132,7 +132,8 @@ void draw_blocks(Svg& svg, const Frame& frame, const Tile& tile, const Mat3& map
       std::vector<Vec2> outline;
       for (const std::uint32_t v : face.loop) outline.push_back(shift + scale * view.flat(solids[k].shape.vertices[v]));
       const double light = std::max(0.0, glm::dot(face.plane.normal, sun));
-      svg.polygon(outline, {.fill = shaded(set_colour(set_of(tile, face.joint)), light, tone), .stroke = "#333", .width = 0.6});
+      svg.polygon(outline,
+                  {.fill = shaded(set_colour(set_of(tile, face.joint)), light, tone), .stroke = "#333", .width = 0.6});
     }
   }
   // A scale bar of a round length, and where north is.
@@ -145,8 +146,8 @@ void draw_blocks(Svg& svg, const Frame& frame, const Tile& tile, const Mat3& map
   svg.line(foot, foot + Vec2(bar * scale, 0.0), {.stroke = "#222", .width = 2.5});
   svg.text(foot + Vec2(bar * scale + 6.0, 4.0), short_number(bar) + " m across the view", {.size = 11});
   const Vec2 compass = frame.corner + Vec2(frame.size.x - 46.0, frame.size.y - 26.0);
-  const std::array<std::pair<Vec3, const char*>, 3> axes{
-      std::pair{Vec3(1, 0, 0), "E"}, std::pair{Vec3(0, 1, 0), "N"}, std::pair{Vec3(0, 0, 1), "up"}};
+  const std::array<std::pair<Vec3, const char*>, 3> axes{std::pair{Vec3(1, 0, 0), "E"}, std::pair{Vec3(0, 1, 0), "N"},
+                                                         std::pair{Vec3(0, 0, 1), "up"}};
   for (const auto& [axis, label] : axes) {
     const Vec2 tip = 30.0 * view.flat(glm::transpose(map_from_tile) * axis);
     svg.line(compass, compass + tip, {.stroke = "#222", .width = 1.3});

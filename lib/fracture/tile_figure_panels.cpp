@@ -92,7 +92,8 @@ std::vector<double> log_ticks(double lo, double hi) {
   return ticks;
 }
 
-void draw_curve(Svg& svg, const Plot& plot, const std::vector<std::pair<double, double>>& sorted, std::string_view colour) {
+void draw_curve(Svg& svg, const Plot& plot, const std::vector<std::pair<double, double>>& sorted,
+                std::string_view colour) {
   double total = 0.0;
   for (const auto& [volume, weight] : sorted) total += weight;
   std::vector<Vec2> points{plot.at(plot.lo.x, 0.0)};
@@ -131,7 +132,8 @@ void draw_stereonet(Svg& svg, const Frame& frame, const Tile& tile, const RockCe
   const std::vector<Pole> poles = poles_of(tile, rock);
   const double largest = poles.empty() ? 1.0 : poles[0].area;
   for (const Pole& pole : poles)
-    svg.circle(centre + radius * projected(report.map_from_tile * pole.normal), 1.5 + 3.5 * std::sqrt(pole.area / largest),
+    svg.circle(centre + radius * projected(report.map_from_tile * pole.normal),
+               1.5 + 3.5 * std::sqrt(pole.area / largest),
                {.fill = set_colour(pole.set), .stroke = "#ffffff", .width = 0.4, .opacity = 0.75});
   double y = frame.corner.y + 26.0;
   const double x = centre.x + radius + 28.0;
@@ -191,15 +193,18 @@ void draw_volumes(Svg& svg, const Frame& frame, const RockStatistics& rock) {
   draw_curve(svg, plot, by_volume, kVolume);
   const auto mark = [&](const Quantiles& q, std::string_view colour) {
     for (const auto& [share, volume] : {std::pair{10.0, q.d10}, std::pair{50.0, q.d50}, std::pair{90.0, q.d90}})
-      svg.circle(plot.at(std::clamp(std::log10(volume), lo, hi), share), 3.4, {.fill = "#fff", .stroke = colour, .width = 1.6});
+      svg.circle(plot.at(std::clamp(std::log10(volume), lo, hi), share), 3.4,
+                 {.fill = "#fff", .stroke = colour, .width = 1.6});
   };
   mark(rock.volume_by_number, kNumber);
   mark(rock.volume_by_volume, kVolume);
   draw_box(svg, plot);
   svg.text(plot.corner + Vec2(8, 16), "by number", {.size = 11, .fill = kNumber, .bold = true});
   svg.text(plot.corner + Vec2(8, 31), "by volume", {.size = 11, .fill = kVolume, .bold = true});
-  svg.text(plot.corner + Vec2(0.5 * plot.size.x, plot.size.y + 32), "block volume, m³", {.size = 11, .anchor = "middle"});
-  svg.text(frame.corner + Vec2(9, 6 + 0.5 * plot.size.y), "% smaller", {.size = 11, .anchor = "middle", .turn_deg = -90});
+  svg.text(plot.corner + Vec2(0.5 * plot.size.x, plot.size.y + 32), "block volume, m³",
+           {.size = 11, .anchor = "middle"});
+  svg.text(frame.corner + Vec2(9, 6 + 0.5 * plot.size.y), "% smaller",
+           {.size = 11, .anchor = "middle", .turn_deg = -90});
 }
 
 void draw_shapes(Svg& svg, const Frame& frame, const RockStatistics& rock) {
@@ -230,7 +235,8 @@ void draw_shapes(Svg& svg, const Frame& frame, const RockStatistics& rock) {
     if (curve.size() < 2) continue;
     svg.polyline(curve, {.stroke = "#999999", .width = 0.8, .dash = "2 3"});
     const bool is_at_top = curve.back().y < plot.corner.y + 30.0;
-    svg.text(curve.back() + (is_at_top ? Vec2(4, 28) : Vec2(3, -3)), "β " + short_number(beta), {.size = 9.5, .fill = "#777"});
+    svg.text(curve.back() + (is_at_top ? Vec2(4, 28) : Vec2(3, -3)), "β " + short_number(beta),
+             {.size = 9.5, .fill = "#777"});
   }
   const double two = std::log10(2.0);
   svg.line(plot.at(two, 0), plot.at(two, end), {.stroke = kInk, .width = 0.8});
@@ -245,7 +251,8 @@ void draw_shapes(Svg& svg, const Frame& frame, const RockStatistics& rock) {
     svg.circle(plot.at(std::min(std::log10(block.elongation()), end), std::min(std::log10(block.flatness()), end)),
                1.2 + 4.0 * std::cbrt(block.volume / greatest), {.fill = kNumber, .opacity = 0.45});
   const auto share = [&](std::size_t k, const char* word) {
-    return std::string(word) + " " + short_number(100.0 * counts[k] / static_cast<double>(rock.blocks.size()), 2) + " %";
+    return std::string(word) + " " + short_number(100.0 * counts[k] / static_cast<double>(rock.blocks.size()), 2) +
+           " %";
   };
   svg.text(plot.at(0, 0) + Vec2(5, -6), share(0, "blocky"), {.size = 11, .bold = true});
   svg.text(plot.at(end, 0) + Vec2(-5, -6), share(1, "columnar"), {.size = 11, .anchor = "end", .bold = true});
@@ -273,7 +280,7 @@ void draw_traces(Svg& svg, const Frame& frame, const Tile& tile, const RockCells
            short_number(tile.side) + " m wide; P21 " + short_number(intensity_p21(traces, cut)) + " 1/m",
            {.size = 11, .anchor = "middle"});
   const Vec3 north = glm::transpose(map_from_tile) * Vec3(0, 1, 0);
-  const Vec2 foot = corner + Vec2(size - 14.0, size + 24.0);
+  const Vec2 foot = corner + Vec2(size - 14.0, size + 34.0);
   const Vec2 tip = foot + 18.0 * Vec2(north.x, -north.y);
   svg.line(foot, tip, {.stroke = kInk, .width = 1.3});
   svg.text(tip + 6.0 * Vec2(north.x, -north.y) + Vec2(0, 4), "N", {.size = 10, .anchor = "middle"});

@@ -23,7 +23,7 @@ struct Paint {
 };
 
 struct TextStyle {
-  double size = 12.0;  ///< px.
+  double size = 12.0;                 ///< px.
   std::string_view anchor = "start";  ///< start, middle, end.
   std::string_view fill = "#222";
   bool bold = false;

@@ -67,8 +67,8 @@ void join(std::vector<Edge>& edges, double tolerance, const Tile& tile, std::vec
     const Edge& first = edges[i];
     const Vec2 n(std::cos(first.angle), std::sin(first.angle));
     const Vec2 along(-n.y, n.x);
-    traces.push_back({first.offset * n + first.lo * along, first.offset * n + hi * along, first.joint,
-                      set_of(tile, first.joint)});
+    traces.push_back(
+        {first.offset * n + first.lo * along, first.offset * n + hi * along, first.joint, set_of(tile, first.joint)});
     i = j;
   }
 }
@@ -80,7 +80,8 @@ void runs(std::vector<Edge> edges, Key&& key, double tolerance, Each&& each) {
   for (std::size_t i = 0; i < edges.size();) {
     std::size_t j = i + 1;
     while (j < edges.size() && key(edges[j]) - key(edges[j - 1]) <= tolerance) ++j;
-    each(std::vector<Edge>(edges.begin() + static_cast<std::ptrdiff_t>(i), edges.begin() + static_cast<std::ptrdiff_t>(j)));
+    each(std::vector<Edge>(edges.begin() + static_cast<std::ptrdiff_t>(i),
+                           edges.begin() + static_cast<std::ptrdiff_t>(j)));
     i = j;
   }
 }
@@ -127,12 +128,17 @@ std::vector<Trace> trace_map(const Tile& tile, const RockCells& rock, const CutP
   });
   std::vector<Trace> traces;
   const double tolerance = kSamePlace * tile.side;
-  runs(edges, [](const Edge& e) { return e.joint; }, 0, [&](const std::vector<Edge>& of_joint) {
-    runs(of_joint, [](const Edge& e) { return e.angle; }, kSameDirection, [&](const std::vector<Edge>& parallel) {
-      runs(parallel, [](const Edge& e) { return e.offset; }, tolerance,
-           [&](std::vector<Edge> line) { join(line, tolerance, tile, traces); });
-    });
-  });
+  runs(
+      edges, [](const Edge& e) { return e.joint; }, 0,
+      [&](const std::vector<Edge>& of_joint) {
+        runs(
+            of_joint, [](const Edge& e) { return e.angle; }, kSameDirection,
+            [&](const std::vector<Edge>& parallel) {
+              runs(
+                  parallel, [](const Edge& e) { return e.offset; }, tolerance,
+                  [&](std::vector<Edge> line) { join(line, tolerance, tile, traces); });
+            });
+      });
   return traces;
 }
 

@@ -11,8 +11,10 @@ namespace {
 constexpr Seed kSeeds[] = {101, 102, 103};  // bench/classify_types.cpp judges a hundred.
 
 Tile boxes(int across_x, int across_y, int across_z) {
-  return test::grid_tile(12.0, {test::random_places(12.0, across_x, 1, "x"), test::random_places(12.0, across_y, 1, "y"),
-                                test::random_places(12.0, across_z, 1, "z")}, 0.01);
+  return test::grid_tile(12.0,
+                         {test::random_places(12.0, across_x, 1, "x"), test::random_places(12.0, across_y, 1, "y"),
+                          test::random_places(12.0, across_z, 1, "z")},
+                         0.01);
 }
 
 TEST(Classify, GivesBackTheTypeThatWasAskedFor) {

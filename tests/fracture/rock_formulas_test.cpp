@@ -67,8 +67,8 @@ TEST(RockFormulas, BlockVolumesOfObliqueSetsAreTheTabledOnesAndNotTheSineForm) {
 TEST(RockFormulas, ShapeFactorsAreTheTabledOnes) {
   const struct {
     double a2, a3, beta;
-  } rows[] = {{1, 1, 27.0},  {1, 2, 31.2}, {1, 3, 38.1}, {1, 10, 92.6},
-              {2, 2, 32.0},  {3, 3, 41.7}, {5, 5, 68.6}, {10, 10, 172.8}};
+  } rows[] = {{1, 1, 27.0}, {1, 2, 31.2}, {1, 3, 38.1}, {1, 10, 92.6},
+              {2, 2, 32.0}, {3, 3, 41.7}, {5, 5, 68.6}, {10, 10, 172.8}};
   for (const auto& row : rows) {
     EXPECT_NEAR(block_shape_factor({1.0, row.a2, row.a3}), row.beta, 0.06);
     EXPECT_NEAR(block_shape_factor({0.3 * row.a3, 0.3, 0.3 * row.a2}), row.beta, 0.06);  // any order, any unit

@@ -76,11 +76,11 @@ TEST(RockStatistics, RandomPersistentJointsHaveTheVolumesOfTheClosedForms) {
   double median = 0.0;
   Quantiles by_volume;
   for (Seed seed = 1; seed <= seeds; ++seed) {
-    const Tile tile = test::grid_tile(side,
-                                      {test::random_places(side, count, seed, "x"),
-                                       test::random_places(side, count, seed, "y"),
-                                       test::random_places(side, count, seed, "z")},
-                                      0.0);
+    const Tile tile =
+        test::grid_tile(side,
+                        {test::random_places(side, count, seed, "x"), test::random_places(side, count, seed, "y"),
+                         test::random_places(side, count, seed, "z")},
+                        0.0);
     const RockStatistics rock = measure_rock(tile);
     EXPECT_NEAR(rock.volume_mean, 1.0, 1e-9);
     EXPECT_NEAR(rock.sets[0].spacing, 1.0, 1e-9);

@@ -32,7 +32,8 @@ TEST(TileFigure, IsOnePageForEveryTypeWithoutABrokenNumber) {
 }
 
 TEST(TileFigure, EscapesWhatMaterialsAreCalled) {
-  const Tile tile = test::grid_tile(4.0, {test::even_places(4.0, 2), test::even_places(4.0, 2), test::even_places(4.0, 2)}, 0.01);
+  const Tile tile =
+      test::grid_tile(4.0, {test::even_places(4.0, 2), test::even_places(4.0, 2), test::even_places(4.0, 2)}, 0.01);
   const std::string svg = tile_figure_svg(tile, tile_report(tile, "<b> & \"c\"\n", {}));
   EXPECT_EQ(count(svg, "<b>"), 0u);
   EXPECT_GE(count(svg, "&lt;b&gt; &amp; &quot;c&quot;<"), 2u);
@@ -40,7 +41,8 @@ TEST(TileFigure, EscapesWhatMaterialsAreCalled) {
 
 TEST(TileFigure, ShowsTheFrontFacesOfBlocksOnce) {
   // Eight boxes: three faces of each turn to the viewer.
-  const Tile tile = test::grid_tile(4.0, {test::even_places(4.0, 2), test::even_places(4.0, 2), test::even_places(4.0, 2)}, 0.01);
+  const Tile tile =
+      test::grid_tile(4.0, {test::even_places(4.0, 2), test::even_places(4.0, 2), test::even_places(4.0, 2)}, 0.01);
   EXPECT_EQ(count(tile_figure_svg(tile, tile_report(tile, "boxes", {})), "<polygon"), 24u);
 }
 

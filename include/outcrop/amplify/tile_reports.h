@@ -16,8 +16,8 @@ struct SizedMaterial {
   std::string note;  ///< One line: what is reached. Empty without a target.
 };
 
-/// Finds the tile side (and with it all other lengths) of a material that asks for a block volume, Jv or RQD; others stay
-/// as they are. Cost: a tile where there is a target.
+/// Finds the tile side (and with it all other lengths) of a material that asks for a block volume, Jv or RQD; others
+/// stay as they are. Cost: a tile where there is a target.
 /// @param file  How its tiles lie: those of the materials that stand in it.
 [[nodiscard]] SizedMaterial meet_target(RockMaterial material, const StrataFile& file, double default_side, Seed seed,
                                         const Task& task = {});

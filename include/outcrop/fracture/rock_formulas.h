@@ -8,9 +8,9 @@
 
 namespace outcrop {
 
-/// The volume of the blocks that three persistent joint sets cut out: S₁ S₂ S₃ / |n₁ · (n₂ × n₃)|, exact for any angles;
-/// infinite when the normals lie in a plane. (The common form with the product of three sines is exact only when two of
-/// the angles between the sets are right: at three angles of 60° it is 9 % too large, at 45° 29 %.)
+/// The volume of the blocks that three persistent joint sets cut out: S₁ S₂ S₃ / |n₁ · (n₂ × n₃)|, exact for any
+/// angles; infinite when the normals lie in a plane. (The common form with the product of three sines is exact only
+/// when two of the angles between the sets are right: at three angles of 60° it is 9 % too large, at 45° 29 %.)
 /// @param spacings  Normal to each set, metres, > 0. @param normals  Unit.
 [[nodiscard]] double block_volume(const std::array<double, 3>& spacings, const std::array<Vec3, 3>& normals) noexcept;
 
@@ -32,8 +32,8 @@ namespace outcrop {
 /// Block size by volume, m³: "extremely small", "very small", "small", "moderate", "large", "very large".
 /// @cite palmstrom_1995
 [[nodiscard]] std::string_view volume_class(double volume) noexcept;
-/// Block shape by β: "equidimensional", "slightly long or flat", "moderately long or flat", "long or flat", "very long or
-/// flat". @cite palmstrom_1995
+/// Block shape by β: "equidimensional", "slightly long or flat", "moderately long or flat", "long or flat", "very long
+/// or flat". @cite palmstrom_1995
 [[nodiscard]] std::string_view shape_class(double beta) noexcept;
 
 }  // namespace outcrop

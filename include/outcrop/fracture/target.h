@@ -27,9 +27,9 @@ struct TargetedTile {
   std::string note;    ///< One line: what was asked for and what is reached.
 };
 
-/// Scales a tile to a target: side, sample spacing, aperture, rounding and every length of its own pattern. Shapes and counts of
-/// blocks stay: a tile scales exactly, so it is made once, measured and scaled. Where targets contradict each other, the
-/// scale with the least sum of squared logarithmic errors is taken (of volumes' cube roots and of Jv).
+/// Scales a tile to a target: side, sample spacing, aperture, rounding and every length of its own pattern. Shapes and
+/// counts of blocks stay: a tile scales exactly, so it is made once, measured and scaled. Where targets contradict each
+/// other, the scale with the least sum of squared logarithmic errors is taken (of volumes' cube roots and of Jv).
 /// @throws ParameterError for a target that is empty or out of its bounds, and as make_tile.
 /// Cost: that of make_tile and measure_rock.
 [[nodiscard]] TargetedTile fit_tile(const TileOptions& options, const RockTarget& target, Seed seed,

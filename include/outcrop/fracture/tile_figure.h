@@ -14,10 +14,10 @@ class JsonWriter;
 
 /// What a report says about one tile.
 struct TileReport {
-  std::string title = "Rock";       ///< The material's name.
-  std::vector<std::string> notes;   ///< Lines under the title: what was asked for, seed, targets.
+  std::string title = "Rock";      ///< The material's name.
+  std::vector<std::string> notes;  ///< Lines under the title: what was asked for, seed, targets.
   BlockType asked = BlockType::Equidimensional;
-  Mat3 map_from_tile{1.0};          ///< Turns orientations into the map's axes for the table and the stereonet.
+  Mat3 map_from_tile{1.0};  ///< Turns orientations into the map's axes for the table and the stereonet.
   RockStatistics statistics;
   Classification found;
 };
