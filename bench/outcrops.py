@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Outcrops against made rock: derives joint sets from trace maps, makes rock from them, cuts it level, and compares.
 
-    bench/outcrops.py --data TABLES --bin build/bench/bin --strata bench/outcrops > table.md
+    bench/outcrops.py --data TABLES --bin build/bench/bin --strata bench/outcrops --pictures docs/images > table.md
 
 For each map: joint sets by azimuth, spacing along scan lines, trace lengths, P21; a strata file with these numbers; a box
 of rock made from it by outcrop_cut; the same measures, by the same code, of its level cuts. Needs numpy.
@@ -267,7 +267,7 @@ class Made:
                     names = [name for *_, name in rows]
                     self.cuts.append(Map("cut", lines, names, [square]))
                 rows = []
-            elif not line.startswith("x0"):
+            elif not line.startswith(("x0", "#")):
                 values = line.split(",")
                 rows.append([float(v) for v in values[:4]] + [values[4]])
 
@@ -302,11 +302,37 @@ def rows_of(outcrop, made):
     return rows
 
 
+def picture(outcrop, made, side):
+    """Map and level cut beside each other, windows of the same size, as SVG."""
+    colours = ["#0072b2", "#d55e00", "#009e73", "#cc79a7"]
+    size, names = 420, [outcrop.set_name(s) for s in sorted(set(outcrop.sets)) if s >= 0]
+    middle = np.concatenate(outcrop.rings).mean(axis=0) - 0.5 * side
+    panels = ((outcrop.lines, [outcrop.set_name(s) for s in outcrop.sets], middle, f"{outcrop.name}, map"),
+              (made.cuts[0].lines, made.cuts[0].sets, np.zeros(2), "made rock, level cut"))
+    body = ""
+    for k, (lines, sets, corner, title) in enumerate(panels):
+        body += (f'<text x="{k * (size + 30)}" y="16">{title}, {side:.0f} m</text>'
+                 f'<svg x="{k * (size + 30)}" y="24" width="{size}" height="{size}" viewBox="0 0 {side} {side}">')
+        for line, name in zip(lines, sets):
+            p = line - corner
+            if (p.max(axis=0) < 0).any() or (p.min(axis=0) > side).any():
+                continue
+            points = " ".join(f"{x:.2f},{side - y:.2f}" for x, y in p)
+            colour = colours[names.index(name) % 4] if name in names else "#777"
+            body += f'<polyline points="{points}" fill="none" stroke="{colour}" stroke-width="{side / 400:.3f}"/>'
+        body += f'<rect width="{side}" height="{side}" fill="none" stroke="#222" stroke-width="{side / 200:.3f}"/></svg>'
+    width, height = 2 * size + 30, size + 30
+    return (f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" width="{width}" '
+            f'height="{height}" font-family="sans-serif" font-size="14">'
+            f'<rect width="{width}" height="{height}" fill="#fff"/>{body}</svg>\n')
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--data", type=Path, required=True, help="folder of the trace maps")
     parser.add_argument("--bin", type=Path, required=True, help="folder of outcrop_cut")
     parser.add_argument("--strata", type=Path, required=True, help="folder for the strata files")
+    parser.add_argument("--pictures", type=Path, help="folder for map and cut beside each other, SVG")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", nargs="*", help="names of maps")
     options = parser.parse_args()
@@ -320,6 +346,9 @@ def main():
         write_strata(strata, outcrop, material)
         made = Made(options.bin / "outcrop_cut", strata, material, options.seed)
         print("\n".join(rows_of(outcrop, made)), flush=True)
+        if options.pictures:
+            name = f"outcrop_{outcrop.name.lower()}.svg"
+            (options.pictures / name).write_text(picture(outcrop, made, material["tile_side"]))
         print(outcrop.name, f"{outcrop.area:.0f} m2 mapped, {len(outcrop.lines)} traces; box of",
               f"{material['tile_side']} m, {LEVELS} cuts, {len(made.lengths())} traces;", made.head, file=sys.stderr)
 

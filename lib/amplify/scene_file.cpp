@@ -230,10 +230,11 @@ FieldPtr read_label(JsonReader& reader, const Context& context) {
 FieldPtr read_tile(JsonReader& reader, const Context& context) {
   const double explode = reader.number("explode", 1.0, {1.0, 100.0});
   const int seed = reader.integer("seed", 1, 0, std::numeric_limits<int>::max());
-  const StrataFile upright{.placement = {.lattice_azimuth = 0.0}};
-  const RockMaterial material = meet_target(read_material(reader, context.folder, TileOptions{}.side), upright,
-                                            TileOptions{}.side, static_cast<Seed>(seed), context.task)
-                                    .material;
+  // A tile by itself lies as it was made: no lattice turns it.
+  StrataFile alone{.materials = {read_material(reader, context.folder, TileOptions{}.side)}};
+  alone.placement.lattice_azimuth = 0.0;
+  const RockMaterial material =
+      meet_targets(std::move(alone), TileOptions{}.side, static_cast<Seed>(seed), context.task).file.materials[0];
   const TileOptions options = tile_options(material, TileOptions{}.side);
   const Tile tile = make_tile(options, static_cast<Seed>(seed), context.task);
   Warp warp;

@@ -10,25 +10,15 @@
 
 namespace outcrop {
 
-/// A material whose target has become lengths.
-struct SizedMaterial {
-  RockMaterial material;
-  std::string note;  ///< One line: what is reached. Empty without a target.
-};
-
-/// Finds the tile side (and with it all other lengths) of a material that asks for a block volume, Jv or RQD; others
-/// stay as they are. Cost: a tile where there is a target.
-/// @param file  How its tiles lie: those of the materials that stand in it.
-[[nodiscard]] SizedMaterial meet_target(RockMaterial material, const StrataFile& file, double default_side, Seed seed,
-                                        const Task& task = {});
-
 /// Materials whose targets have become lengths.
 struct SizedStrata {
   StrataFile file;
   std::vector<std::string> notes;  ///< One line a material with a target: what it reaches.
 };
 
-/// The same for all materials of a file. @param seed  Of the first material; the next ones count on.
+/// Finds the tile sides (and with them all other lengths) of the materials that ask for a block volume, Jv or RQD, as
+/// their tiles lie; others stay as they are. @param seed  Of the first material; the next ones count on.
+/// Cost: a tile a material with a target.
 [[nodiscard]] SizedStrata meet_targets(StrataFile file, double default_side, Seed seed, const Task& task = {});
 
 /// Writes a report on every material's tile: one page each in a `.html`, all numbers in a `.json`.
