@@ -305,9 +305,10 @@ def rows_of(outcrop, made):
 def picture(outcrop, made, side):
     """Map and level cut beside each other, windows of the same size, as SVG."""
     colours = ["#0072b2", "#d55e00", "#009e73", "#cc79a7"]
-    size, names = 420, [outcrop.set_name(s) for s in sorted(set(outcrop.sets)) if s >= 0]
+    name_of = {s: outcrop.set_name(s) for s in sorted(set(outcrop.sets))}
+    size, names = 420, [name for s, name in name_of.items() if s >= 0]
     middle = np.concatenate(outcrop.rings).mean(axis=0) - 0.5 * side
-    panels = ((outcrop.lines, [outcrop.set_name(s) for s in outcrop.sets], middle, f"{outcrop.name}, map"),
+    panels = ((outcrop.lines, [name_of[s] for s in outcrop.sets], middle, f"{outcrop.name}, map"),
               (made.cuts[0].lines, made.cuts[0].sets, np.zeros(2), "made rock, level cut"))
     body = ""
     for k, (lines, sets, corner, title) in enumerate(panels):
@@ -323,7 +324,7 @@ def picture(outcrop, made, side):
         body += f'<rect width="{side}" height="{side}" fill="none" stroke="#222" stroke-width="{side / 200:.3f}"/></svg>'
     width, height = 2 * size + 30, size + 30
     return (f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" width="{width}" '
-            f'height="{height}" font-family="sans-serif" font-size="14">'
+            f'height="{height}" font-family="Helvetica, Arial, DejaVu Sans" font-size="14">'
             f'<rect width="{width}" height="{height}" fill="#fff"/>{body}</svg>\n')
 
 
