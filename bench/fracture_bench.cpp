@@ -37,17 +37,48 @@ void grow(benchmark::State& state, const TileOptions& options) {
 void growth(benchmark::State& state) {
   const double side = 20.0 * std::cbrt(static_cast<double>(state.range(0)));
   JointPattern pattern = joint_pattern(BlockType::Polyhedral);
-  pattern.discs *= static_cast<int>(state.range(0));  // the same joints a volume, as long in metres
-  for (JointSet& set : pattern.sets) {
-    set.radius_lo *= 20.0 / side;
-    set.radius_hi *= 20.0 / side;
-  }
-  pattern.centre_spacing *= 20.0 / side;
-  pattern.least_thickness *= 20.0 / side;
+  pattern.discs *= static_cast<int>(state.range(0));  // the same joints a volume
   grow(state,
        {.type = BlockType::Polyhedral, .pattern = pattern, .side = side, .spacing = 20.0 / kSpacingsPerSide});
 }
 BENCHMARK(growth)->Arg(1)->Arg(10)->Arg(70)->Unit(benchmark::kMillisecond);
+
+// The same with all that sets can say: beds, joints that end at them, discs by P32, one by hand.
+void joint_sets(benchmark::State& state) {
+  const double side = 20.0 * std::cbrt(static_cast<double>(state.range(0)));
+  const JointPattern pattern{
+      .sets = {{.name = "beds",
+                .normal = {0, 0, 1},
+                .kappa = 500,
+                .spacing = 1.8,
+                .spacing_law = SpacingLaw::Lognormal,
+                .radius_law = RadiusLaw::Persistent},
+               {.name = "dip joints",
+                .normal = {1, 0, 0},
+                .kappa = 200,
+                .spacing = 3.5,
+                .radius_law = RadiusLaw::Persistent,
+                .ends_at = {"beds"},
+                .ends_share = 0.9},
+               {.name = "strike joints",
+                .normal = {0, 1, 0},
+                .kappa = 200,
+                .spacing = 3.0,
+                .persistence = 0.8,
+                .radius_lo = 2.0,
+                .radius_hi = 5.0,
+                .ends_at = {"beds", "dip joints"}},
+               {.name = "others",
+                .normal = {0.6, 0.0, 0.8},
+                .kappa = 20,
+                .p32 = 0.05,
+                .radius_law = RadiusLaw::PowerLaw,
+                .radius_lo = 2.0,
+                .radius_hi = 10.0}},
+      .discs_at = {{.centre = {5, 5, 5}, .radius = 4.0, .normal = {0, 0.6, 0.8}}}};
+  grow(state, {.pattern = pattern, .side = side, .spacing = 20.0 / kSpacingsPerSide});
+}
+BENCHMARK(joint_sets)->Arg(1)->Arg(10)->Arg(70)->Unit(benchmark::kMillisecond);
 
 // The same joints in the same tile, judged by n times the samples.
 void refinement(benchmark::State& state) {

@@ -27,7 +27,7 @@ int main(int argc, char** argv) {
   outcrop::AmplifyRun run;
   outcrop::cli::Options options;
 
-  app.add_option("HEIGHTMAP", run.heightmap, "Elevations: EXR, TIFF, GeoTIFF, PNG or SRTM .hgt")->required();
+  app.add_option("HEIGHTMAP", run.heightmap, "Elevations: EXR, TIFF, GeoTIFF, PNG or SRTM .hgt; --tile-report does without");
   app.add_option("--strata", run.strata, "Description of the rock, strata.json");
   outcrop::cli::add_output_options(app, run.meshes, run.previews, run.width, run.height);
   app.add_flag_callback(
@@ -35,6 +35,8 @@ int main(int argc, char** argv) {
          "Print the block types as a strata file to copy from, and exit")
       ->trigger_on_parse();
   app.add_option("--report", run.report, "Report to write, JSON");
+  app.add_option("--tile-report", run.tile_reports, "Rock in numbers, a page for each material: .html, .json; may be repeated")
+      ->allow_extra_args(false);
 
   app.add_option("--cell-size", run.heights.cell_size, "Metres between samples; default: the file's, else 1");
   app.add_option("--height-scale", run.heights.height_scale, "Elevation = sample * scale + offset")->capture_default_str();

@@ -123,8 +123,10 @@ Warp make_warp(const RockMaterial& material, double side, double resolution) {
   return {std::make_shared<Relief>(relief->smoothed(2.0 * resolution)), measures.amplitude};
 }
 
-RockReport report_of(const RockMaterial& material, const MadeRock& rock) {
+RockReport report_of(const RockMaterial& material, const MadeRock& rock, const Mat3& map_from_tile,
+                     const AmplifyOptions& options, const Task& task) {
   RockReport report{.material = material.name, .type = rock.tile.type, .tile = rock.tile.statistics};
+  if (options.measure) report.measured = tile_report(rock.tile, material.name, {}, map_from_tile, task);
   report.tile_blocks = rock.tile.blocks.size();
   for (const Block& block : rock.tile.blocks) {
     report.block_volumes.push_back(block.volume);
@@ -230,7 +232,7 @@ Amplified amplify(const Heightfield& heightfield, const StrataFile& strata_file,
     if (!used[m]) continue;
     task.check();
     rocks[m] = make_rock(tile_in_place(strata_file, m, default_side), options, options.seed + m, task);
-    result.rocks.push_back(report_of(material, rocks[m]));
+    result.rocks.push_back(report_of(material, rocks[m], world_from_tile(strata_file), options, task));
     result.mean_block_size = std::max(result.mean_block_size, rocks[m].block_size);
     if (!rocks[m].placeable) continue;
     rocks[m].reach = kReachInBlocks * rocks[m].block_size;

@@ -7,6 +7,7 @@
 
 #include "joint_reader.h"
 #include "outcrop/core/data_path.h"
+#include "target_reader.h"
 
 namespace outcrop {
 namespace {
@@ -88,6 +89,7 @@ RockMaterial read_material(JsonReader& reader, const std::filesystem::path& fold
   material.variants = reader.integer("variants", material.variants, 1, 64);
   const double joint_side = side > 0.0 ? side : kPatternSide;
   material.joints = read_joints(reader, material.block_type, folder, joint_side, spacing_of(material, joint_side));
+  material.target = read_target(reader);
   if (const Json* json = reader.child("relief")) read_relief_keys(*json, material, folder, side);
   const Vec3f& c = material.colour;
   const std::vector<double> colour = reader.numbers("colour", {c.r, c.g, c.b}, 3, {0.0, 1.0});

@@ -33,6 +33,7 @@ std::vector<std::filesystem::path> Outputs::all() const {
   std::vector<std::filesystem::path> paths = meshes;
   paths.insert(paths.end(), previews.begin(), previews.end());
   if (!report.empty()) paths.push_back(report);
+  paths.insert(paths.end(), tile_reports.begin(), tile_reports.end());
   return paths;
 }
 
@@ -41,6 +42,8 @@ void check_outputs(const Outputs& outputs, const std::vector<std::filesystem::pa
     check_extension(path, "--output", "a name that ends in .ply, .obj, .stl or .vdb", {".ply", ".obj", ".stl", ".vdb"});
   for (const auto& path : outputs.previews)
     check_extension(path, "--preview", "a name that ends in .png or .exr", {".png", ".exr"});
+  for (const auto& path : outputs.tile_reports)
+    check_extension(path, "--tile-report", "a name that ends in .html or .json", {".html", ".json"});
   const std::vector<std::filesystem::path> paths = outputs.all();
   for (std::size_t i = 0; i < paths.size(); ++i) {
     check_output_path(paths[i]);

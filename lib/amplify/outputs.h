@@ -21,6 +21,7 @@ struct Outputs {
   std::vector<std::filesystem::path> meshes;    ///< .ply, .obj, .stl, .vdb
   std::vector<std::filesystem::path> previews;  ///< .png, .exr
   std::filesystem::path report;                 ///< Any name; may be empty.
+  std::vector<std::filesystem::path> tile_reports{};  ///< .html, .json
 
   [[nodiscard]] std::vector<std::filesystem::path> all() const;
 };

@@ -79,6 +79,11 @@ void write_rock(JsonWriter& json, const RockReport& rock) {
   json.value("seconds", tile.seconds).value("overlap_share", tile.overlap_share);
   write_planes(json, "snapped", tile.filled_share, tile.mean_planes, tile.max_planes);
   write_planes(json, "plain_hulls", tile.plain_filled_share, tile.plain_mean_planes, tile.plain_max_planes);
+  if (rock.measured) {
+    json.begin_object("measured");
+    write_tile_report(json, *rock.measured);
+    json.end_object();
+  }
   write_summary(json, "volume", rock.block_volumes);
   write_summary(json, "faces", {rock.block_faces.begin(), rock.block_faces.end()});
   std::vector<double> longest, shortest;

@@ -9,6 +9,7 @@
 
 #include "clip_mesh.h"
 #include "outcrop/amplify/report.h"
+#include "outcrop/amplify/tile_reports.h"
 #include "outcrop/core/file.h"
 #include "outcrop/core/parallel.h"
 #include "outcrop/mesh/mesh_measure.h"
@@ -217,11 +218,16 @@ class Runner {
 
   std::string operator()() {
     prepare();
+    if (run_.heightmap.empty()) {
+      report_tiles_alone();
+      return {};
+    }
     read();
     compose();
     if (run_.dry_run) return dry_run_text(run_, report_, expected_);
     if (!run_.meshes.empty()) mesh();
     if (!run_.previews.empty()) preview();
+    if (!run_.tile_reports.empty()) report_tiles(default_tile_side(*report_.heightfield));
     if (!run_.report.empty()) write_report();
     return {};
   }
@@ -247,7 +253,10 @@ class Runner {
 
   /// Everything that can be refused before any work.
   void prepare() {
-    if (!run_.dry_run && run_.meshes.empty() && run_.previews.empty() && run_.report.empty()) {
+    const bool has_terrain_output = !run_.meshes.empty() || !run_.previews.empty() || !run_.report.empty();
+    require(!run_.heightmap.empty() || (!run_.tile_reports.empty() && !has_terrain_output && !run_.dry_run), "HEIGHTMAP",
+            "a file, or --tile-report as the only output", "none");
+    if (!run_.dry_run && !has_terrain_output && run_.tile_reports.empty()) {
       const std::string stem = run_.heightmap.stem().string() + "_rock";
       run_.meshes = {stem + ".ply"};
       run_.previews = {stem + ".png"};
@@ -261,7 +270,7 @@ class Runner {
               "the same twice");
     }
     report_.memory_limit = memory_limit_bytes(run_.memory_limit_gib);
-    check_outputs({run_.meshes, run_.previews, run_.report}, {run_.heightmap, run_.strata});
+    check_outputs({run_.meshes, run_.previews, run_.report, run_.tile_reports}, {run_.heightmap, run_.strata});
     report_.command = run_.command;
     report_.heightmap = run_.heightmap;
     report_.strata = run_.strata;
@@ -279,15 +288,37 @@ class Runner {
     HeightfieldFile file = read_heightfield(run_.heightmap, run_.heights);
     for (const std::string& line : file.notes) note(run_.heightmap.string() + ": " + line);
     report_.heightfield = make_heightfield(run_, std::move(file));
-    if (strata) check_lengths(*strata, folder, default_tile_side(*report_.heightfield));
+    const double side = default_tile_side(*report_.heightfield);
+    if (strata) check_lengths(*strata, folder, side);
+    meet_rock_targets(side);
     report_.seconds.reading = watch_.lap();
     task_.check();
+  }
+
+  void meet_rock_targets(double default_side) {
+    SizedStrata sized = meet_targets(std::move(report_.rock), default_side, run_.seed, task_);
+    report_.rock = std::move(sized.file);
+    for (const std::string& line : sized.notes) note(line);
+  }
+
+  void report_tiles(double default_side) {
+    const std::string title = run_.strata.empty() ? "Rock" : run_.strata.stem().string();
+    write_tile_reports(run_.tile_reports, report_.rock, default_side, run_.seed, title, task_);
+    for (const auto& path : run_.tile_reports) written(path, "materials in numbers");
+  }
+
+  /// Without a terrain: tiles are as wide as the paper's where a material does not say.
+  void report_tiles_alone() {
+    if (!run_.strata.empty()) report_.rock = read_strata(read_json(run_.strata), run_.strata.parent_path(), kPatternSide);
+    meet_rock_targets(kPatternSide);
+    speak();
+    report_tiles(kPatternSide);
   }
 
   void compose() {
     const Window window = choose_window(*report_.heightfield, report_.rock, run_);
     if (!window.note.empty()) note(window.note);
-    report_.options = {window.lo, window.hi, window.resolution, run_.seed};
+    report_.options = {window.lo, window.hi, window.resolution, run_.seed, !run_.report.empty()};
     tolerance_ = run_.tolerance.value_or(0.0);
     if (!run_.tolerance &&
         steep_share(*report_.heightfield, window.lo, window.hi, report_.rock.placement.slope) < kSteepShare)

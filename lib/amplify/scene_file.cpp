@@ -9,6 +9,7 @@
 #include <glm/vector_relational.hpp>
 
 #include "material_reader.h"
+#include "outcrop/amplify/tile_reports.h"
 #include "outcrop/core/json.h"
 #include "outcrop/fracture/tile.h"
 #include "outcrop/implicit/combine.h"
@@ -229,7 +230,11 @@ FieldPtr read_label(JsonReader& reader, const Context& context) {
 FieldPtr read_tile(JsonReader& reader, const Context& context) {
   const double explode = reader.number("explode", 1.0, {1.0, 100.0});
   const int seed = reader.integer("seed", 1, 0, std::numeric_limits<int>::max());
-  const RockMaterial material = read_material(reader, context.folder, TileOptions{}.side);
+  // A tile by itself lies as it was made: no lattice turns it.
+  StrataFile alone{.materials = {read_material(reader, context.folder, TileOptions{}.side)}};
+  alone.placement.lattice_azimuth = 0.0;
+  const RockMaterial material =
+      meet_targets(std::move(alone), TileOptions{}.side, static_cast<Seed>(seed), context.task).file.materials[0];
   TileOptions options = tile_options(material, TileOptions{}.side);
   options.variants = 1;  // One tile is all that is shown.
   const Tile tile = make_tile(options, static_cast<Seed>(seed), context.task);

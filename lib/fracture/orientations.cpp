@@ -15,9 +15,10 @@
 namespace outcrop {
 namespace {
 
-constexpr double kLeastTerzaghi = radians(15.0);  // Below this angle to the line, weights would be noise (Terzaghi 1965).
+constexpr double kLeastTerzaghi =
+    radians(15.0);  // Below this angle to the line, weights would be noise (Terzaghi 1965).
 
-constexpr double kMostDirection = 720.0;          // Degrees: jittered readings run past north, typing errors farther.
+constexpr double kMostDirection = 720.0;  // Degrees: jittered readings run past north, typing errors farther.
 
 Vec3 upward(const Vec3& v) {
   const bool is_down = v.z < 0.0 || (v.z == 0.0 && (v.y < 0.0 || (v.y == 0.0 && v.x < 0.0)));
@@ -247,7 +248,8 @@ double terzaghi_weight(const Vec3& pole, const Vec3& line) noexcept {
   return 1.0 / std::max(std::abs(glm::dot(pole, line)), std::sin(kLeastTerzaghi));
 }
 
-FoundSets find_joint_sets(std::span<const Vec3> poles, const FindSetsOptions& options, std::span<const double> weights) {
+FoundSets find_joint_sets(std::span<const Vec3> poles, const FindSetsOptions& options,
+                          std::span<const double> weights) {
   check_weights(poles, weights);
   require(options.most_sets >= 1 && options.most_sets <= 20, "most_sets", "in 1 … 20", options.most_sets);
   require(options.sets >= 0 && options.sets <= options.most_sets, "sets", "in 0 … most_sets", options.sets);
@@ -279,7 +281,8 @@ FoundSets find_joint_sets(std::span<const Vec3> poles, const FindSetsOptions& op
   }
   std::vector<int> order(best.size());
   std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return held[std::size_t(a)] > held[std::size_t(b)]; });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int a, int b) { return held[std::size_t(a)] > held[std::size_t(b)]; });
   std::vector<int> rank(best.size());
   for (std::size_t k = 0; k < order.size(); ++k) rank[static_cast<std::size_t>(order[k])] = static_cast<int>(k);
   double random = 0.0;

@@ -21,8 +21,8 @@ constexpr double kLeastInradius = 0.4;  // Of the spacing: a thinner piece would
 constexpr double kLongest = 0.95;       // Of the side: a block as long as the tile would show its period.
 constexpr std::size_t kAnchors = 24;
 constexpr std::size_t kOverlapProbes = 20'000;
-constexpr int kMostPasses = 4;           // Of drawing and splitting, until sets have the intensity that was asked for.
-constexpr double kNearIntensity = 0.02;  // Relative: near enough.
+constexpr int kMostPasses = 6;           // Of drawing and splitting, until sets have the intensity that was asked for.
+constexpr double kNearIntensity = 0.03;  // Relative: near enough.
 constexpr double kLeastChange = 0.1;     // Of a set's amount, to make up for growth …
 constexpr double kMostChange = 4.0;      // … and for joints that end.
 
@@ -110,21 +110,26 @@ Split split_as_asked(const std::vector<Vec3>& samples, const Graph& graph, Joint
                      const ClusterOptions& options, Seed seed, const Task& task) {
   const std::vector<JointSet> asked = pattern.sets;
   std::vector<double> change(asked.size(), 1.0);
-  for (int pass = 1;; ++pass) {
+  Split best;
+  double least_error = 1e300;  // the largest of any set, as a logarithm
+  for (int pass = 1; pass <= kMostPasses && least_error > kNearIntensity; ++pass) {
     Split split{.pattern = pattern, .drawn = draw_discs(pattern, options.side, seed, options.domain)};
     split.clusters = split_samples(samples, graph, split.drawn, options, seed, task);
     split.intensities = intensities_of(split.clusters, split.drawn, asked, options.side);
-    bool is_near = true;
+    double error = 0.0;
     for (std::size_t s = 0; s < asked.size(); ++s) {
       const SetIntensity& got = split.intensities[s];
       if (is_persistent(asked[s]) || got.asked == 0.0 || got.made == 0.0) continue;
-      is_near = is_near && std::abs(got.made / got.asked - 1.0) < kNearIntensity;
+      error = std::max(error, std::abs(std::log(got.made / got.asked)));
       change[s] = std::clamp(change[s] * got.asked / got.made, kLeastChange, kMostChange);
       pattern.sets[s].p32 = change[s] * asked[s].p32;
       pattern.sets[s].persistence = std::min(4.0, change[s] * asked[s].persistence);
     }
-    if (is_near || pass == kMostPasses) return split;
+    if (error >= least_error) continue;
+    least_error = error;
+    best = std::move(split);
   }
+  return best;
 }
 
 // The discs as they cut: with the normals of the faces along them, and once more for each further normal, to which those
@@ -225,6 +230,8 @@ Tile make_tile(const TileOptions& options, Seed seed, const Task& task) {
   Tile tile;
   tile.side = options.side;
   tile.type = options.type;
+  tile.aperture = options.aperture;
+  tile.domain = options.domain;
   tile.sets = pattern.sets;
   tile.discs = discs_as_cut(clusters.discs, clusters.list);
   const auto blocks_of = [&](const Clusters& of) {

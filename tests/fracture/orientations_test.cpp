@@ -26,7 +26,9 @@ std::vector<Vec3> fisher_poles(const Vec3& mean, double kappa, int count, Seed s
   return poles;
 }
 
-void append(std::vector<Vec3>& poles, const std::vector<Vec3>& more) { poles.insert(poles.end(), more.begin(), more.end()); }
+void append(std::vector<Vec3>& poles, const std::vector<Vec3>& more) {
+  poles.insert(poles.end(), more.begin(), more.end());
+}
 
 std::string message_of(std::string_view text) {
   try {

@@ -272,6 +272,33 @@ TEST(Tile, HasColumnsWithTheIntensityOfVoronoiPrisms) {
   EXPECT_LT(p32, 2.0 * std::sqrt(1.0 / (0.866 * width * width)));
 }
 
+TEST(Tile, HasTheJointAreaThatSetsAskForHoweverDiscsGrow) {
+  const auto set = [](const char* name, const Vec3& normal, JointSet like) {
+    like.name = name;
+    like.normal = normal;
+    return like;
+  };
+  const JointSet planes{.kappa = 200, .spacing = 3.0, .radius_law = RadiusLaw::Persistent};
+  const JointSet small{.kappa = 200, .p32 = 0.3, .radius_lo = 3.0, .radius_hi = 5.0};
+  const JointSet sheets{.kappa = 200, .spacing = 2.0, .persistence = 0.6, .radius_lo = 3.0, .radius_hi = 5.0};
+  for (const JointSet& like : {planes, small, sheets}) {
+    double ratio = 0.0, growth = 0.0;
+    for (Seed seed = 1; seed <= 6; ++seed) {
+      const Tile tile = make_tile(
+          {.pattern = {.sets = {set("a", {1, 0, 0}, like), set("b", {0, 1, 0}, like), set("c", {0, 0, 1}, like)}},
+           .spacing = 0.85},
+          seed);
+      ASSERT_EQ(tile.statistics.intensities.size(), 3u);
+      for (const SetIntensity& got : tile.statistics.intensities) {
+        ratio += got.made / got.asked / 18.0;
+        growth += got.made / std::max(got.drawn, 1e-9) / 18.0;
+      }
+    }
+    EXPECT_NEAR(ratio, 1.0, 0.1);
+    EXPECT_GT(growth, 1.2) << "else nothing would need to be made up for";
+  }
+}
+
 TEST(Tile, IsTheSameOnOneThreadAndOnMany) {
   const auto bytes_of = [](int threads) {
     const ThreadLimit limit(threads);

@@ -8,6 +8,7 @@
 
 #include "outcrop/amplify/strata_file.h"
 #include "outcrop/core/task.h"
+#include "outcrop/fracture/tile_figure.h"
 #include "outcrop/implicit/field.h"
 #include "outcrop/terrain/heightfield.h"
 
@@ -17,6 +18,7 @@ struct AmplifyOptions {
   Vec2 region_lo{0.0}, region_hi{0.0};  ///< Map coordinates; the rectangle that is wanted.
   double resolution = 0.25;             ///< Metres: detail below two of these is left out.
   Seed seed = 1;
+  bool measure = false;                 ///< Whether tiles are measured and classified, for reports.
 };
 
 /// What one material contributed.
@@ -24,6 +26,7 @@ struct RockReport {
   std::string material;
   BlockType type = BlockType::Equidimensional;
   TileStatistics tile;
+  std::optional<TileReport> measured;      ///< When asked for.
   std::vector<double> block_volumes;       ///< Of the tile's blocks, m³.
   std::vector<std::size_t> block_faces;
   std::vector<Vec3> block_sizes;           ///< Extents along the tile's axes, metres.

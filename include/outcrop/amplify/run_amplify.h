@@ -15,11 +15,12 @@
 namespace outcrop {
 
 struct AmplifyRun {
-  std::filesystem::path heightmap;
+  std::filesystem::path heightmap;                ///< Empty: tile reports alone.
   std::filesystem::path strata;                   ///< Empty: built-in defaults.
   std::vector<std::filesystem::path> meshes;      ///< .ply, .obj, .stl, .vdb
   std::vector<std::filesystem::path> previews;    ///< .png, .exr
   std::filesystem::path report;                   ///< Empty: none.
+  std::vector<std::filesystem::path> tile_reports; ///< .html, .json: pages and numbers on the materials' tiles.
   HeightfieldOptions heights;
   Interpolation interpolation = Interpolation::Smooth;
   std::optional<NodataPolicy> nodata;             ///< Overrides the strata file.

@@ -10,6 +10,7 @@
 #include "outcrop/amplify/placement_rule.h"
 #include "outcrop/core/json.h"
 #include "outcrop/core/vec.h"
+#include "outcrop/fracture/target.h"
 #include "outcrop/fracture/tile.h"
 #include "outcrop/terrain/heightfield.h"
 #include "outcrop/terrain/strata.h"
@@ -21,6 +22,7 @@ struct RockMaterial {
   std::string name = "rock";
   BlockType block_type = BlockType::Equidimensional;
   std::optional<JointPattern> joints;  ///< Replaces the type's own pattern.
+  RockTarget target;                   ///< What the tile is scaled to: see meet_targets.
   double tile_side = 0.0;              ///< Metres; 0: 20 m, or smaller on terrains too small for that.
   double sample_spacing = 0.0;         ///< Metres; 0: tile_side / kSpacingsPerSide.
   double aperture = 0.0;               ///< Metres; 0: 0.002 · tile_side.

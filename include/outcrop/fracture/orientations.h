@@ -30,8 +30,8 @@ struct AxisStatistics {
   double count = 0.0;      ///< N, or the sum of the weights.
 };
 
-/// @param weights  Empty, or one a pole, ≥ 0 (areas, Terzaghi weights); they are scaled so that Σ w = (Σ w)² / Σ w², the
-/// number of poles that they are worth.
+/// @param weights  Empty, or one a pole, ≥ 0 (areas, Terzaghi weights); they are scaled so that Σ w = (Σ w)² / Σ w²,
+/// the number of poles that they are worth.
 /// @throws ParameterError when there are weights, but not one a pole. Method: Fisher 1953, on axes after Watson 1966.
 [[nodiscard]] AxisStatistics axis_statistics(std::span<const Vec3> poles, std::span<const double> weights = {});
 
@@ -53,18 +53,19 @@ struct FoundSets {
 };
 
 struct FindSetsOptions {
-  int sets = 0;              ///< Wanted; 0: as many as the poles show, by the Bayesian information criterion.
-  int most_sets = 8;         ///< At most, [1, 20].
-  double least_share = 0.05; ///< A set holds this share of the weight at least, when their number is found.
+  int sets = 0;               ///< Wanted; 0: as many as the poles show, by the Bayesian information criterion.
+  int most_sets = 8;          ///< At most, [1, 20].
+  double least_share = 0.05;  ///< A set holds this share of the weight at least, when their number is found.
 };
 
 /// Parts poles into joint sets and random joints: a mixture of Fisher distributions of axes over a uniform background,
-/// fitted by expectation maximisation; sets are added one by one, each where the poles that no set explains are densest.
-/// Without random numbers, so the same poles give the same sets.
+/// fitted by expectation maximisation; sets are added one by one, each where the poles that no set explains are
+/// densest. Without random numbers, so the same poles give the same sets.
 ///
 /// @param weights  Empty, or one a pole, ≥ 0.
 /// @throws ParameterError for options outside their bounds, or weights that are not one a pole.
-/// Cost: O(poles² + poles · sets² · 100). Method: Banerjee et al. 2005 for the concentration; the criterion is Schwarz's.
+/// Cost: O(poles² + poles · sets² · 100). Method: Banerjee et al. 2005 for the concentration; the criterion is
+/// Schwarz's.
 [[nodiscard]] FoundSets find_joint_sets(std::span<const Vec3> poles, const FindSetsOptions& options = {},
                                         std::span<const double> weights = {});
 

@@ -82,6 +82,8 @@ struct TileStatistics {
 struct Tile {
   double side = 20.0;
   BlockType type = BlockType::Equidimensional;
+  double aperture = 0.0;  ///< Of cracks: half of it lies before each face, metres.
+  Domain domain = Domain::Torus;
   std::vector<Block> blocks;
   /// The discs as they cut, first as many as were drawn, in their order: one that was turned to close around the tile
   /// has the turned normal; one that was turned in several ways stands once for each. `Disc::set` indexes `sets`.
