@@ -78,6 +78,13 @@ void write_rock(JsonWriter& json, const RockReport& rock) {
   write_count(json, "bytes", rock.bytes);
   json.value("seconds", tile.seconds).value("overlap_share", tile.overlap_share);
   write_planes(json, "snapped", tile.filled_share, tile.mean_planes, tile.max_planes);
+  json.begin_array("joint_sets");
+  for (const SetIntensity& set : tile.intensities) {
+    json.begin_object().value("name", set.name);
+    if (set.asked > 0.0) json.value("asked_p32", set.asked);
+    json.value("drawn_p32", set.drawn).value("made_p32", set.made).end_object();
+  }
+  json.end_array();
   write_planes(json, "plain_hulls", tile.plain_filled_share, tile.plain_mean_planes, tile.plain_max_planes);
   if (rock.measured) {
     json.begin_object("measured");

@@ -13,7 +13,8 @@ namespace outcrop {
 namespace {
 
 constexpr int kCentreAttempts = 24;    // Candidates for a centre before a crowded set takes the roomiest one.
-constexpr double kCrowdRadius = 4.0;   // Of the least radius: larger discs of a set do not mind all of each other.
+constexpr int kDenseAttempts = 5;      // The same for sets by spacing or P32, whose discs are many.
+constexpr double kCrowdRadius = 2.0;   // Of the least radius: larger discs of a set do not mind all of each other.
 
 std::uint64_t stream(std::size_t set, std::size_t index) { return std::uint64_t{set} << 40 | index; }
 
@@ -47,8 +48,9 @@ CentreCube centre_cube(const JointSet& set, double side, Domain domain) {
 /// The discs of one set so far.
 class SetDiscs {
  public:
-  /// @param reach  Metres beyond which discs do not mind each other.
-  SetDiscs(const CentreCube& cube, double reach) : cube_(cube), grid_(cube.side, reach) {}
+  /// @param reach  Metres beyond which discs do not mind each other. @param attempts  Candidates for a centre.
+  SetDiscs(const CentreCube& cube, double reach, int attempts)
+      : cube_(cube), attempts_(attempts), grid_(cube.side, reach) {}
 
   /// Blue noise by rejection: the first candidate with room, or the one with most room. Centres keep `spacing`, and
   /// discs that lie over each other keep `shadow` along the normal.
@@ -57,7 +59,7 @@ class SetDiscs {
                                  Rng& rng) const {
     Vec3 best{0.0};
     double best_room = -1.0;
-    for (int attempt = 0; attempt < kCentreAttempts && best_room < 1.0; ++attempt) {
+    for (int attempt = 0; attempt < attempts_ && best_room < 1.0; ++attempt) {
       const Vec3 p = candidate(rng);
       double room = 1.0;  // 1: enough
       grid_.visit_near(p - cube_.lo, [&](std::uint32_t i) {
@@ -83,6 +85,7 @@ class SetDiscs {
 
  private:
   CentreCube cube_;
+  int attempts_;
   WrappedGrid grid_;
   std::vector<Disc> discs_;
 };
@@ -117,7 +120,7 @@ std::vector<Disc> discs_by_share(const JointPattern& pattern, double side, Seed 
     if (is_measured(pattern.sets[s])) continue;
     sets.push_back(s);
     shares.push_back(pattern.sets[s].share);
-    drawn.emplace_back(cube, std::max({spacing, shadow, 2.0 * pattern.sets[s].radius_hi, side / 64.0}));
+    drawn.emplace_back(cube, std::max({spacing, shadow, 2.0 * pattern.sets[s].radius_hi, side / 64.0}), kCentreAttempts);
   }
   std::vector<Disc> discs;
   if (sets.empty()) return discs;
@@ -150,7 +153,8 @@ std::vector<Disc> discs_by_intensity(const JointPattern& pattern, std::size_t s,
   const double spacing = std::max(pattern.centre_spacing, least);
   const double shadow = std::max(pattern.least_thickness, least);
   SetDiscs drawn(cube, std::max({spacing, shadow, 2.0 * std::min(set.radius_hi, kCrowdRadius * set.radius_lo),
-                                 cube.side / 64.0}));
+                                 cube.side / 64.0}),
+                 kDenseAttempts);
   std::vector<Disc> discs;
   const double wanted = set.p32 * cube.volume();
   for (double area = 0.0;;) {
@@ -194,7 +198,8 @@ std::vector<Disc> discs_on_sheets(const JointPattern& pattern, std::size_t s, do
   const Vec3 a = glm::normalize(glm::cross(helper, axis));
   const Vec3 b = glm::cross(axis, a);
 
-  SetDiscs drawn(cube, std::max(2.0 * std::min(set.radius_hi, kCrowdRadius * set.radius_lo), cube.side / 64.0));
+  SetDiscs drawn(cube, std::max(2.0 * std::min(set.radius_hi, kCrowdRadius * set.radius_lo), cube.side / 64.0),
+                 kDenseAttempts);
   const double least = side * 1e-6;
   const double wanted = set.persistence * area * static_cast<double>(sheets.size());
   std::vector<Disc> discs;

@@ -83,9 +83,11 @@ std::vector<SetIntensity> intensities_of(const Clusters& clusters, const std::ve
                                          const std::vector<JointSet>& sets, double side) {
   const double volume = side * side * side;
   std::vector<SetIntensity> result(sets.size());
-  for (std::size_t s = 0; s < sets.size(); ++s)
+  for (std::size_t s = 0; s < sets.size(); ++s) {
+    result[s].name = sets[s].name;
     if (is_measured(sets[s]))
       result[s].asked = (is_persistent(sets[s]) || sets[s].spacing == 0.0 ? 1.0 : sets[s].persistence) / mean_gap(sets[s]);
+  }
   for (const Disc& disc : drawn)
     if (disc.set >= 0) result[static_cast<std::size_t>(disc.set)].drawn += kPi * disc.radius * disc.radius / volume;
   for (const Cluster& cluster : clusters.list)

@@ -218,6 +218,30 @@ TEST(PersistentPlanes, HaveTheIntensityOfTheirSpacingOnTheTorus) {
     }
 }
 
+TEST(PersistentPlanes, KeepTheLawOfTheirSpacingAroundTheTorus) {
+  // N gaps that add up to a period: of exponential ones CV² = (N − 1) / (N + 1).
+  const double side = 20.0;
+  const double count = 20.0;
+  for (const SpacingLaw law : {SpacingLaw::Fixed, SpacingLaw::Exponential, SpacingLaw::Lognormal}) {
+    double square = 0.0;
+    for (Seed seed = 1; seed <= kSeeds; ++seed) {
+      const JointPattern pattern{
+          .sets = {planes({1, 0, 0}, side / count, law), planes({0, 1, 0}, 10.0), planes({0, 0, 1}, 10.0)}};
+      std::vector<double> at;
+      for (const Disc& disc : cells(pattern, side, seed, Domain::Torus).discs)
+        if (disc.set == 0) at.push_back(disc.centre.x - side * std::floor(disc.centre.x / side));
+      ASSERT_EQ(at.size(), count);
+      std::sort(at.begin(), at.end());
+      for (std::size_t i = 0; i < at.size(); ++i) {
+        const double gap = i > 0 ? at[i] - at[i - 1] : at[0] + side - at.back();
+        square += std::pow(gap * count / side - 1.0, 2) / (count * kSeeds);
+      }
+    }
+    const double expected = law == SpacingLaw::Fixed ? 0.0 : law == SpacingLaw::Exponential ? (count - 1) / (count + 1) : 0.25;
+    EXPECT_NEAR(std::sqrt(square), std::sqrt(expected), 0.1 * std::sqrt(expected) + 1e-9);
+  }
+}
+
 TEST(Columns, OfHexagonsHaveTheirClosedForm) {
   // Vb = √3/2 d² h and P32 = 2/d + 1/h; d from the columns' mean area, since the lattice is stretched to the tile.
   const double side = 14.0;

@@ -55,6 +55,7 @@ struct Block {
 
 /// The joints of one set, as area in a volume (P32), 1/m.
 struct SetIntensity {
+  std::string name{};
   double asked = 0.0;  ///< 0: the set went by share.
   double drawn = 0.0;  ///< Of its discs, Σ π r² / side³; 0 for persistent sets.
   double made = 0.0;   ///< Of the faces between blocks along its joints.
