@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <memory>
 #include <utility>
 
@@ -161,9 +162,84 @@ class Rules {
   std::vector<RuleValue> of_material_;
 };
 
+/// What placing blocks of any rock needs to know.
+struct PlacedScene {
+  const StrataFile& file;
+  const Strata& strata;
+  const AmplifyOptions& options;
+  const RockZone& zone;
+  const Rules& rules;
+  const std::vector<LargeFracture>& fractures;
+  FieldPtr terrain, stratified;
+  Box domain;
+  Vec2 corner{0.0};  ///< South-west, of the terrain.
+  FieldPtr base = displaced_terrain(terrain, zone.recess, 1.0);
+  FieldPtr clip = displaced_terrain(terrain, zone.advance, -1.0);
+
+  [[nodiscard]] bool visible(const Box& box) const {
+    const Vec2 a(box.lo), b(box.hi);
+    if (zone.recess.bound(a, b).hi <= 0.0 && zone.advance.bound(a, b).hi <= 0.0) return false;
+    return base->bound(box).hi > 0.0 && clip->bound(box).lo < 0.0;
+  }
+
+  /// The blocks of one rock, by the limbs of the folds; what they count goes to `report`.
+  [[nodiscard]] std::vector<FieldPtr> place(Label label, MadeRock rock, RockReport& report, const Task& task) const {
+    const Placement& placement = file.placement;
+    const RockMaterial& material = file.materials[label];
+    const Mat3 bedding_from_tile = glm::transpose(file.strata.world_from_bedding()) * world_from_tile(file);
+    const double size = rock.block_size, aperture = rock.aperture;
+    const Warp warp = make_warp(material, rock.tile.side, options.resolution);
+    // Cracks narrower than two cells are welded everywhere: a mesh would show them as scattered holes.
+    const double swelling = 0.5 * aperture * std::clamp(2.0 - aperture / options.resolution, 0.0, 1.0) * (1.0 + 1e-3);
+    const double crack = placement.recess > 0.0 ? placement.crack_depth / (kReachInBlocks * placement.recess) : 0.0;
+    const FieldPtr crack_floor = displaced_terrain(terrain, zone.recess, crack);
+    std::vector<FieldPtr> placed;
+    for (const Strata::Limb& limb : strata.limbs()) {
+      const FieldPtr body = stratum_body(strata, label, limb, kFarthestBody, kFarthestBody);
+      ReplicationOptions replication{
+          .domain = domain,
+          .criterion = stepped(all_of({distance_between(placement.distance_lo * size, placement.distance_hi * size),
+                                       slope_at_least(placement.slope)}),
+                               fractures),
+          .body = body,
+          .seed = options.seed + label,
+          .slope = [this](const Vec3& p) { return zone.nearby.at(p.x, p.y).h > 0.0 ? 0.5 * kPi : 0.0; },
+          .visible = [this, body](const Box& box) { return (!body || body->bound(box).lo < 0.0) && visible(box); },
+          .crack_floor = crack_floor,
+          // Half the crack, and the grooves that rounding leaves along edges (at most R/3 where three faces meet).
+          .closure = 0.5 * aperture + 0.34 * rock.rounding,
+          .closure_slope = kClosureSlope,
+          .swelling = swelling,
+          .min_inradius = 0.5 * kCellsInSmallestBlock * options.resolution,
+          .cap = kCapInBlocks * size};
+      if (zone.weighted)
+        replication.weight = [this, label](const Anchor& anchor) {
+          const Vec2 ground = zone.ground.at(Vec2(anchor.position));
+          const RuleSite site{
+              .position = anchor.position, .ground = ground, .distance = anchor.distance, .material = label};
+          return zone.rim.at(ground.x, ground.y).h * rules.weight(site);
+        };
+      auto node = std::make_shared<Replication>(Rock{.tile = rock.tile,
+                                                     .warp = warp,
+                                                     .label = label,
+                                                     .world_from_tile = limb.world_from_bedding * bedding_from_tile,
+                                                     .origin = Vec3(corner, 0.0)},
+                                                stratified, std::move(replication), task);
+      report.replicated_blocks += node->block_count();
+      report.bytes += node->tile_bytes();
+      if (node->block_count() == 0) continue;
+      const FieldPtr cut = stratum_body(strata, label, limb, 2.0 * size, 2.0 * kCapInBlocks * size);
+      placed.push_back(cut ? bedded_rock(std::move(node), cut, {0.5 * aperture - swelling, crack_floor, kClosureSlope})
+                           : std::move(node));
+    }
+    return placed;
+  }
+};
+
 /// Walks along the input surface's normal, outwards from rock and inwards from air, to the surface of the result, and asks
 /// whose it is. Opposite walls of a gully are not mistaken for it.
-void measure(Amplified& result, const Field& rock, const Heightfield& heightfield, const RockZone& zone, double reach, Seed seed) {
+void measure(Amplified& result, const Field& rock, const Heightfield& heightfield, const RockZone& zone, double reach,
+             Seed seed) {
   const Vec2 lo(result.region.lo), hi(result.region.hi);
   const double threshold = std::cos(zone.slope);
   int probes = 0, on_blocks = 0;
@@ -257,13 +333,20 @@ Amplified amplify(const Heightfield& heightfield, const StrataFile& strata_file,
   const Rules rules(strata_file, heightfield, std::max(largest_block, options.resolution));
   std::function<double(const Vec3&)> weight_at;
   if (rules.any())
-    weight_at = [&](const Vec3& p) { return rules.weight({.position = p, .ground = Vec2(p), .distance = {}, .material = strata.material(p)}); };
+    weight_at = [&](const Vec3& p) {
+      return rules.weight({.position = p, .ground = Vec2(p), .distance = {}, .material = strata.material(p)});
+    };
   if (reach > 0.0)
     zone = make_rock_zone(heightfield,
-                          {.lo = lo - margin, .hi = hi + margin, .slope = placement.slope, .reach = reach,
+                          {.lo = lo - margin,
+                           .hi = hi + margin,
+                           .slope = placement.slope,
+                           .reach = reach,
                            .recess = placement.recess,
                            .reach_at = [&](const Vec3& p) { return rocks[strata.material(p)].reach; },
-                           .spacing = spacing, .block_size = largest_block, .weight_at = weight_at,
+                           .spacing = spacing,
+                           .block_size = largest_block,
+                           .weight_at = weight_at,
                            .rim = placement.rim * largest_block},
                           task);
 
@@ -271,71 +354,24 @@ Amplified amplify(const Heightfield& heightfield, const StrataFile& strata_file,
   const Interval heights = heightfield.height_bound(lo, hi);
   double top = heights.hi;
   if (!zone.empty) {
-    const FieldPtr base = displaced_terrain(filled, zone.recess, 1.0);
-    const FieldPtr clip = displaced_terrain(filled, zone.advance, -1.0);
-    const auto visible = [&](const Box& box) {
-      const Vec2 a(box.lo), b(box.hi);
-      if (zone.recess.bound(a, b).hi <= 0.0 && zone.advance.bound(a, b).hi <= 0.0) return false;
-      return base->bound(box).hi > 0.0 && clip->bound(box).lo < 0.0;
-    };
-    const auto slope = [&](const Vec3& p) { return zone.nearby.at(p.x, p.y).h > 0.0 ? 0.5 * kPi : 0.0; };
-    const Box domain{Vec3(lo - reach, heights.lo - 2.0 * margin), Vec3(hi + reach, heights.hi + margin)};
+    const PlacedScene scene{.file = strata_file,
+                            .strata = strata,
+                            .options = options,
+                            .zone = zone,
+                            .rules = rules,
+                            .fractures = fractures,
+                            .terrain = filled,
+                            .stratified = stratified,
+                            .domain = {Vec3(lo - reach, heights.lo - 2.0 * margin), Vec3(hi + reach, heights.hi + margin)},
+                            .corner = heightfield.lo()};
     std::vector<FieldPtr> placed;
-    const std::vector<Strata::Limb> limbs = strata.limbs();
-    const Mat3 bedding_from_tile = glm::transpose(strata_file.strata.world_from_bedding()) * world_from_tile(strata_file);
     std::size_t report = 0;
     for (std::size_t m = 0; m < material_count; ++m) {
       if (!used[m]) continue;
       RockReport& rock_report = result.rocks[report++];
       if (!rocks[m].placeable) continue;
-      const auto label = static_cast<Label>(m);
-      const RockMaterial& material = strata_file.materials[m];
-      const double size = rocks[m].block_size;
-      const double side = rocks[m].tile.side;
-      const double aperture = rocks[m].aperture;
-      const Warp warp = make_warp(material, side, options.resolution);
-      // Cracks narrower than two cells are welded everywhere: a mesh would show them as scattered holes.
-      const double swelling =
-          0.5 * aperture * std::clamp(2.0 - aperture / options.resolution, 0.0, 1.0) * (1.0 + 1e-3);
-      const double crack = placement.recess > 0.0 ? placement.crack_depth / (kReachInBlocks * placement.recess) : 0.0;
-      const FieldPtr crack_floor = displaced_terrain(filled, zone.recess, crack);
-      for (const Strata::Limb& limb : limbs) {
-        const FieldPtr body = stratum_body(strata, label, limb, kFarthestBody, kFarthestBody);
-        ReplicationOptions replication{
-            .domain = domain,
-            .criterion = stepped(all_of({distance_between(placement.distance_lo * size, placement.distance_hi * size),
-                                         slope_at_least(placement.slope)}),
-                                 fractures),
-            .body = body,
-            .seed = options.seed + m,
-            .slope = slope,
-            .visible = [&](const Box& box) { return (!body || body->bound(box).lo < 0.0) && visible(box); },
-            .crack_floor = crack_floor,
-            // Half the crack, and the grooves that rounding leaves along edges (at most R/3 where three faces meet).
-            .closure = 0.5 * aperture + 0.34 * rocks[m].rounding,
-            .closure_slope = kClosureSlope,
-            .swelling = swelling,
-            .min_inradius = 0.5 * kCellsInSmallestBlock * options.resolution,
-            .cap = kCapInBlocks * size};
-        if (zone.weighted)
-          replication.weight = [&rules, &zone, label](const Anchor& anchor) {
-            const Vec2 p(anchor.position), on_rock = zone.ground.at(p);
-            const double weight = zone.rim.at(on_rock.x, on_rock.y).h;
-            return weight * rules.weight({anchor.position, on_rock, anchor.distance, label});
-          };
-        auto node = std::make_shared<Replication>(
-            Rock{.tile = &limb == &limbs.back() ? std::move(rocks[m].tile) : rocks[m].tile, .warp = warp, .label = label,
-                 .world_from_tile = limb.world_from_bedding * bedding_from_tile, .origin = Vec3(heightfield.lo(), 0.0)},
-            stratified, std::move(replication), task);
-        rock_report.replicated_blocks += node->block_count();
-        rock_report.bytes += node->tile_bytes();
-        if (node->block_count() == 0) continue;
-        if (body)
-          placed.push_back(bedded_rock(std::move(node), stratum_body(strata, label, limb, 2.0 * size, 2.0 * kCapInBlocks * size),
-                                       {0.5 * aperture - swelling, crack_floor, kClosureSlope}));
-        else
-          placed.push_back(std::move(node));
-      }
+      std::ranges::move(scene.place(static_cast<Label>(m), std::move(rocks[m]), rock_report, task),
+                        std::back_inserter(placed));
     }
     if (!placed.empty()) rock_field = union_of(std::move(placed));
     field = rock_on_terrain(filled, zone, rock_field, stratified, ground);

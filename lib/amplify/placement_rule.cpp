@@ -16,7 +16,7 @@ using Kind = PlacementRule::Kind;
 /// Nothing: the rule cannot say.
 using MaybeValue = std::function<std::optional<double>(const RuleSite&)>;
 
-constexpr int kCircle = 8;           // Points about a place at which curvature compares the ground.
+constexpr int kCircle = 8;            // Points about a place at which curvature compares the ground.
 constexpr double kLevelSlope = 1e-3;  // Tangent below which the ground has no aspect.
 
 /// 0 outside, rising to 1 within `soft` behind the border.
@@ -108,8 +108,8 @@ MaybeValue leaf(const PlacementRule& rule, const Heightfield& heightfield, doubl
     case Kind::Mask: {
       Image image = read_image(rule.image);
       if (const std::optional<std::string> wanted = MapImage::misfit(image, heightfield))
-        throw InputError(rule.place + ": \"mask\": expected " + *wanted + ", got " + std::to_string(image.width) + " x " +
-                         std::to_string(image.height));
+        throw InputError(rule.place + ": \"mask\": expected " + *wanted + ", got " + std::to_string(image.width) +
+                         " x " + std::to_string(image.height));
       const auto mask = std::make_shared<const MapImage>(std::move(image), heightfield);
       return [=](const RuleSite& s) { return std::clamp(mask->brightness(s.position.x, s.position.y), 0.0, 1.0); };
     }
@@ -184,10 +184,12 @@ double turn(const Vec2& a, const Vec2& b, const Vec2& c) {
 /// Do two closed segments share a point?
 bool meet(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
   const auto within = [](const Vec2& p, const Vec2& q, const Vec2& r) {
-    return std::min(p.x, q.x) <= r.x && r.x <= std::max(p.x, q.x) && std::min(p.y, q.y) <= r.y && r.y <= std::max(p.y, q.y);
+    return std::min(p.x, q.x) <= r.x && r.x <= std::max(p.x, q.x) && std::min(p.y, q.y) <= r.y &&
+           r.y <= std::max(p.y, q.y);
   };
   const double abc = turn(a, b, c), abd = turn(a, b, d), cda = turn(c, d, a), cdb = turn(c, d, b);
-  if (((abc > 0.0) != (abd > 0.0)) && ((cda > 0.0) != (cdb > 0.0)) && abc != 0.0 && abd != 0.0 && cda != 0.0 && cdb != 0.0)
+  if (((abc > 0.0) != (abd > 0.0)) && ((cda > 0.0) != (cdb > 0.0)) && abc != 0.0 && abd != 0.0 && cda != 0.0 &&
+      cdb != 0.0)
     return true;
   return (abc == 0.0 && within(a, b, c)) || (abd == 0.0 && within(a, b, d)) || (cda == 0.0 && within(c, d, a)) ||
          (cdb == 0.0 && within(c, d, b));

@@ -23,9 +23,11 @@ constexpr float kRimOffset = 1.0f;       // Nodes; what smoothing leaves on grou
 constexpr float kRimSharpness = 2.0f;    // Where a rim bends, the true distance times this bounds the smoothed one.
 constexpr double kProbesPerCell = 2.0;   // Slopes looked at across a cell of the heightfield, at least,
 constexpr int kMostProbes = 4;           // … but no more than this many across a cell of the raster.
-constexpr int kRuleMargin = 2;           // Nodes of the coarse raster that a rule's border loses: bilinear weights are 0 beyond it.
-constexpr double kDownhill = 0.5;        // Tangent of a fall that counts as down to where the ground withdraws.
-constexpr double kAdvanceWeight = 4.0;   // The advance is whole where the weight is a quarter: blocks stand out of thin rock, too.
+constexpr int kRuleMargin =
+    2;  // Nodes of the coarse raster that a rule's border loses: bilinear weights are 0 beyond it.
+constexpr double kDownhill = 0.5;  // Tangent of a fall that counts as down to where the ground withdraws.
+constexpr double kAdvanceWeight =
+    4.0;  // The advance is whole where the weight is a quarter: blocks stand out of thin rock, too.
 constexpr double kCertainlySteep = 1.005;  // Times the threshold's tangent: between two probes the slope may dip.
 constexpr int kTile = 64;                // Nodes, across squares of the raster that are gentle as a whole or looked at.
 
@@ -229,15 +231,16 @@ Envelopes make_envelopes(const Heightfield& heightfield, const Raster& raster, d
     }
     task.advance();
   }, task);
-  return {raster.layer(std::move(fall)), raster.layer(std::move(rise)), rule ? raster.layer(std::move(weight)) : RasterLayer()};
+  return {raster.layer(std::move(fall)), raster.layer(std::move(rise)),
+          rule ? raster.layer(std::move(weight)) : RasterLayer()};
 }
 
 /// The weight on a raster, 0 at nodes within kRuleMargin of one where it is 0: 0 wherever weight_at is.
 ///
 /// @param wanted  Which nodes are asked; the rest has 1.
 template <class Wanted>
-RasterLayer make_weight(const Heightfield& heightfield, const Raster& raster, const std::function<double(const Vec3&)>& weight_at,
-                        const Wanted& wanted) {
+RasterLayer make_weight(const Heightfield& heightfield, const Raster& raster,
+                        const std::function<double(const Vec3&)>& weight_at, const Wanted& wanted) {
   std::vector<float> asked(raster.count(), 1.0f), weight(raster.count());
   raster.for_each_node([&](std::size_t i, int column, int row) {
     const Vec2 p = raster.node(column, row);
@@ -263,7 +266,8 @@ NearestGround nearest_ground(const Raster& raster, const std::vector<char>& mark
     if (distance[i] > radius) return;
     for (const Neighbour& n : neighbours)
       if (marked[raster.neighbour(column, row, n.dx, n.dy)]) {
-        nodes[i] = raster.node(std::clamp(column + n.dx, 0, raster.width - 1), std::clamp(row + n.dy, 0, raster.height - 1));
+        nodes[i] =
+            raster.node(std::clamp(column + n.dx, 0, raster.width - 1), std::clamp(row + n.dy, 0, raster.height - 1));
         break;
       }
   });
@@ -313,10 +317,9 @@ RockZone make_rock_zone(const Heightfield& heightfield, const RockZoneOptions& o
 
   const std::vector<float> to_steep = raster.distance(steep, true, largest_radius + 2.0 * coarse.spacing);
   const auto near_steep = [&](const Vec2& p, double radius) { return to_steep[raster.nearest(p)] <= radius; };
-  const Envelopes envelopes =
-      make_envelopes(heightfield, coarse, options.recess,
-                     [&](const Vec2& p) { return near_steep(p, 2.0 * coarse.spacing); }, reach_at,
-                     options.weight_at ? &rule : nullptr, task);
+  const Envelopes envelopes = make_envelopes(
+      heightfield, coarse, options.recess, [&](const Vec2& p) { return near_steep(p, 2.0 * coarse.spacing); }, reach_at,
+      options.weight_at ? &rule : nullptr, task);
   std::vector<float> nearby(coarse.count());
   coarse.for_each_node([&](std::size_t i, int column, int row) {
     nearby[i] = near_steep(coarse.node(column, row), largest_radius + coarse.spacing) ? 1.0f : 0.0f;

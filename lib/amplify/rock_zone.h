@@ -21,7 +21,8 @@ struct RockZoneOptions {
   std::function<double(const Vec3&)> reach_at;  ///< At a point of the surface, [0, reach]; 0: left alone. Null: `reach`.
   double spacing = 1.0;   ///< Of the raster that the rim is drawn on, metres, > 0.
   double block_size = 0.0;  ///< Metres; ledges narrower than this count as part of the wall. 0: none do.
-  /// How much rock a point of the surface may have, [0, 1]; 0: left alone. Both envelopes follow it. Null: 1 everywhere.
+  /// How much rock a point of the surface may have, [0, 1]; 0: left alone. Both envelopes follow it. Null: 1
+  /// everywhere.
   std::function<double(const Vec3&)> weight_at;
   double rim = 0.0;  ///< Metres from the rim of the steep ground over which the weight grows from 0, ≥ 0.
 };
@@ -32,7 +33,11 @@ class NearestGround {
   NearestGround() = default;
   /// @param nodes  One for each node of the layer's raster, rows from the south.
   NearestGround(int width, int height, const Vec2& lo, double spacing, std::vector<Vec2> nodes)
-      : width_(width), height_(height), lo_(lo), spacing_(spacing), nodes_(std::make_shared<std::vector<Vec2>>(std::move(nodes))) {}
+      : width_(width),
+        height_(height),
+        lo_(lo),
+        spacing_(spacing),
+        nodes_(std::make_shared<std::vector<Vec2>>(std::move(nodes))) {}
 
   /// To within a node of the envelopes' raster; p itself where none is within reach.
   [[nodiscard]] Vec2 at(const Vec2& p) const noexcept;

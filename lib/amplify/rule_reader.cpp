@@ -32,8 +32,7 @@ constexpr double kFarthest = 1e6;  // Metres: softness and scales beyond make no
 /// Two numbers in order, null for an open end.
 std::pair<double, double> read_range(const Json& json, std::string_view key, const Bounds& bounds) {
   const std::string name = "\"" + std::string(key) + "\": ";
-  if (json.type != Json::Type::Array || json.items.size() != 2)
-    json.fail(name + "[from, to], null for an open end");
+  if (json.type != Json::Type::Array || json.items.size() != 2) json.fail(name + "[from, to], null for an open end");
   std::array<double, 2> ends{bounds.lo, bounds.hi};
   for (std::size_t i = 0; i < 2; ++i) {
     const Json& item = json.items[i];
@@ -68,15 +67,17 @@ std::vector<Vec2> read_polygon(const Json& json) {
       json.items[i].fail("\"polygon\": corners that differ from the next; the last joins the first by itself",
                          "corner " + std::to_string(i + 1) + " twice");
   if (const auto sides = crossing_sides(polygon))
-    json.items[sides->second].fail("\"polygon\": sides that do not cross",
-                                   "side " + std::to_string(sides->second + 1) + " across side " + std::to_string(sides->first + 1));
+    json.items[sides->second].fail(
+        "\"polygon\": sides that do not cross",
+        "side " + std::to_string(sides->second + 1) + " across side " + std::to_string(sides->first + 1));
   return polygon;
 }
 
 Box read_box(const Json& json) {
   JsonReader reader(json);
   for (const char* key : {"lo", "hi"})
-    if (!reader.has(key)) json.fail("\"box\" with the keys \"lo\" and \"hi\"", "one without \"" + std::string(key) + "\"");
+    if (!reader.has(key))
+      json.fail("\"box\" with the keys \"lo\" and \"hi\"", "one without \"" + std::string(key) + "\"");
   const std::vector<double> lo = reader.numbers("lo", {}, 3), hi = reader.numbers("hi", {}, 3);
   for (int axis = 0; axis < 3; ++axis)
     if (!(lo[axis] < hi[axis])) reader.child("hi")->fail("\"hi\": more than \"lo\" along each axis");
@@ -87,7 +88,8 @@ Box read_box(const Json& json) {
 void read_sphere(PlacementRule& rule, const Json& json) {
   JsonReader reader(json);
   for (const char* key : {"centre", "radius"})
-    if (!reader.has(key)) json.fail("\"sphere\" with the keys \"centre\" and \"radius\"", "one without \"" + std::string(key) + "\"");
+    if (!reader.has(key))
+      json.fail("\"sphere\" with the keys \"centre\" and \"radius\"", "one without \"" + std::string(key) + "\"");
   const std::vector<double> centre = reader.numbers("centre", {}, 3);
   rule.centre = {centre[0], centre[1], centre[2]};
   rule.radius = reader.number("radius", 0.0, kPositive);
@@ -96,12 +98,16 @@ void read_sphere(PlacementRule& rule, const Json& json) {
 
 Label read_material_name(const Json& json, const std::vector<std::string_view>& materials) {
   // The reader's own words for a wrong name, with the nearest.
-  Json object{.type = Json::Type::Object, .members = {{"material", json}}, .file = json.file, .line = json.line, .column = json.column};
+  Json object{.type = Json::Type::Object,
+              .members = {{"material", json}},
+              .file = json.file,
+              .line = json.line,
+              .column = json.column};
   return static_cast<Label>(JsonReader(object).choice("material", 0, materials));
 }
 
-void read_parts(PlacementRule& rule, const Json& json, std::string_view key, const std::vector<std::string_view>& materials,
-                const std::filesystem::path& folder) {
+void read_parts(PlacementRule& rule, const Json& json, std::string_view key,
+                const std::vector<std::string_view>& materials, const std::filesystem::path& folder) {
   if (json.type != Json::Type::Array || json.items.empty()) json.fail("\"" + std::string(key) + "\": a list of rules");
   for (const Json& item : json.items) rule.parts.push_back(read_rule(item, materials, folder));
 }
@@ -113,11 +119,13 @@ std::filesystem::path image_path(const Json& json, const std::filesystem::path& 
   const std::filesystem::path path(json.string);
   const std::filesystem::path file = path.is_absolute() ? path : folder / path;
   std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error)) json.fail("the path of an image", "\"" + file.string() + "\", which is no file");
+  if (!std::filesystem::is_regular_file(file, error))
+    json.fail("the path of an image", "\"" + file.string() + "\", which is no file");
   return file;
 }
 
-PlacementRule read_rule(const Json& json, const std::vector<std::string_view>& materials, const std::filesystem::path& folder) {
+PlacementRule read_rule(const Json& json, const std::vector<std::string_view>& materials,
+                        const std::filesystem::path& folder) {
   JsonReader reader(json);
   const Json* found = nullptr;
   std::string_view key;
@@ -128,7 +136,9 @@ PlacementRule read_rule(const Json& json, const std::vector<std::string_view>& m
     known += (known.empty() ? "" : ", ") + std::string(name);
     const Json* member = reader.child(name);
     if (!member) continue;
-    if (found) member->fail("one kind of rule each; \"all\" and \"any\" combine them", "\"" + std::string(key) + "\" and \"" + std::string(name) + "\"");
+    if (found)
+      member->fail("one kind of rule each; \"all\" and \"any\" combine them",
+                   "\"" + std::string(key) + "\" and \"" + std::string(name) + "\"");
     found = member, key = name, rule.kind = kind;
   }
   if (!found) {

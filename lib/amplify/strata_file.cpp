@@ -65,8 +65,8 @@ ReadLayer read_layer(const Json& json, const std::vector<std::string_view>& name
   const Json* thickness = reader.child("thickness");
   if (top && thickness) thickness->fail("\"top\" or \"thickness\"", "both");
   if (!top && !thickness && (!last || repeat))
-    json.fail("a layer with the key \"top\" or \"thickness\"", repeat ? "one without, in a sequence that repeats"
-                                                                      : "one without; only the last may lack it");
+    json.fail("a layer with the key \"top\" or \"thickness\"",
+              repeat ? "one without, in a sequence that repeats" : "one without; only the last may lack it");
   const Bounds bounds = file.relative_tops ? Bounds{-10.0, 10.0} : Bounds{-12'000.0, 12'000.0};
   layer.stratum.top = top ? reader.number("top", 0.0, bounds) : std::numeric_limits<double>::infinity();
   if (thickness && thickness->type == Json::Type::Array && repeat)
@@ -77,7 +77,8 @@ ReadLayer read_layer(const Json& json, const std::vector<std::string_view>& name
   return layer;
 }
 
-/// Layers by tops as they are; by thickness, tops above the base, over as many repetitions as lists of thicknesses need.
+/// Layers by tops as they are; by thickness, tops above the base, over as many repetitions as lists of thicknesses
+/// need.
 void read_layers(const std::vector<Json>& items, StrataFile& file, bool repeat) {
   const std::vector<std::string_view> names = names_of(file.materials);
   std::vector<ReadLayer> layers;
@@ -112,16 +113,20 @@ void read_layers(const std::vector<Json>& items, StrataFile& file, bool repeat) 
 Fault read_fault(const Json& json, bool relative) {
   JsonReader reader(json);
   for (const char* key : {"point", "dip_deg", "slip"})
-    if (!reader.has(key)) json.fail("a fault with the keys \"point\", \"dip_deg\" and \"slip\"", "one without \"" + std::string(key) + "\"");
+    if (!reader.has(key))
+      json.fail("a fault with the keys \"point\", \"dip_deg\" and \"slip\"",
+                "one without \"" + std::string(key) + "\"");
   Fault fault;
   const std::vector<double> point = reader.numbers("point", {}, 3);
   fault.point = {point[0], point[1], point[2]};
-  if (relative && std::abs(fault.point.z) > 10.0) reader.child("point")->fail("\"point\": a relative elevation in [-10, 10]");
+  if (relative && std::abs(fault.point.z) > 10.0)
+    reader.child("point")->fail("\"point\": a relative elevation in [-10, 10]");
   fault.dip = radians(reader.number("dip_deg", 0.0, {0.0, 90.0, true}));
   fault.dip_direction = radians(reader.number("dip_direction_deg", 0.0, {0.0, 360.0}));
   fault.slip = reader.number("slip", 0.0, {-kThickness.hi, kThickness.hi});
   // The displacement must not fold space over.
-  if (reader.has("extent")) fault.extent = reader.number("extent", 0.0, {std::max(2.0 * std::abs(fault.slip), kThickness.lo), 1e6});
+  if (reader.has("extent"))
+    fault.extent = reader.number("extent", 0.0, {std::max(2.0 * std::abs(fault.slip), kThickness.lo), 1e6});
   reader.finish();
   return fault;
 }
@@ -134,7 +139,9 @@ Fold read_fold(const Json& json) {
   fold.axis = radians(reader.number("axis_deg", 0.0, {0.0, 360.0}));
   if (fold.amplitude > kSteepestFold * fold.wavelength)
     json.fail("\"fold\": an amplitude of at most a quarter of the wavelength",
-              "limbs of " + std::to_string(std::lround(degrees(std::atan(2.0 * kPi * fold.amplitude / fold.wavelength)))) + " degrees");
+              "limbs of " +
+                  std::to_string(std::lround(degrees(std::atan(2.0 * kPi * fold.amplitude / fold.wavelength)))) +
+                  " degrees");
   reader.finish();
   return fold;
 }
@@ -155,7 +162,8 @@ MapFile read_map(const Json& json, const std::vector<std::string_view>& names, c
       value = entry.numbers("colour", {}, 3);
     else
       value = {entry.number("colour", 0.0)};
-    map.entries.push_back({std::vector<float>(value.begin(), value.end()), static_cast<Label>(entry.choice("material", 0, names))});
+    map.entries.push_back(
+        {std::vector<float>(value.begin(), value.end()), static_cast<Label>(entry.choice("material", 0, names))});
     entry.finish();
   }
   if (map.entries.empty()) json.fail("\"materials\": at least one colour and its material", "none");
@@ -181,14 +189,16 @@ void read_strata_pile(const Json& json, StrataFile& file, const std::filesystem:
     strata.undulation_wavelength = reader.number("undulation_wavelength", strata.undulation_wavelength, kPositive);
   if (const Json* fold = reader.child("fold")) strata.fold = read_fold(*fold);
   for (const Json& fault : reader.array("faults")) strata.faults.push_back(read_fault(fault, file.relative_tops));
-  if (strata.faults.size() > kMostFaults) reader.child("faults")->fail("\"faults\": at most " + std::to_string(kMostFaults));
+  if (strata.faults.size() > kMostFaults)
+    reader.child("faults")->fail("\"faults\": at most " + std::to_string(kMostFaults));
   if (const Json* map = reader.child("map")) file.map = read_map(*map, names_of(file.materials), folder);
   const std::vector<double> reference = reader.numbers("reference", {0.0, 0.0}, 2);
   strata.reference = {reference[0], reference[1]};
   reader.finish();
 }
 
-Placement read_placement(const Json& json, const std::vector<std::string_view>& names, const std::filesystem::path& folder) {
+Placement read_placement(const Json& json, const std::vector<std::string_view>& names,
+                         const std::filesystem::path& folder) {
   JsonReader reader(json);
   Placement placement;
   placement.slope = radians(reader.number("slope_deg", degrees(placement.slope), {0.0, 89.0}));
@@ -237,7 +247,8 @@ StrataFile read_strata(const Json& json, const std::filesystem::path& folder, do
   (void)reader.integer("version", kVersion, kVersion, kVersion);
   file.materials = read_materials(reader, folder, default_side);
   if (const Json* strata = reader.child("strata")) read_strata_pile(*strata, file, folder);
-  if (const Json* placement = reader.child("placement")) file.placement = read_placement(*placement, names_of(file.materials), folder);
+  if (const Json* placement = reader.child("placement"))
+    file.placement = read_placement(*placement, names_of(file.materials), folder);
   if (const Json* large = reader.child("large_fractures")) file.large_fractures = read_large_fractures(*large);
   const Vec3f& ground = file.ground_colour;
   const std::vector<double> colour = reader.numbers("ground_colour", {ground.r, ground.g, ground.b}, 3, {0.0, 1.0});
@@ -250,18 +261,19 @@ StrataFile read_strata(const Json& json, const std::filesystem::path& folder, do
 Strata strata_on(const StrataFile& file, const Heightfield& heightfield) {
   Strata strata = file.strata;
   const Interval heights = heightfield.height_bound(heightfield.lo(), heightfield.hi());
-  const auto elevation = [&](double given) { return file.relative_tops ? heights.lo + given * heights.width() : given; };
+  const auto elevation = [&](double given) {
+    return file.relative_tops ? heights.lo + given * heights.width() : given;
+  };
   const double base = elevation(file.base);
   for (Stratum& layer : strata.layers) layer.top = file.thicknesses ? base + layer.top : elevation(layer.top);
   if (strata.base) strata.base = base;
   strata.reference += heightfield.lo();
-  for (Fault& fault : strata.faults)
-    fault.point = Vec3(Vec2(fault.point) + heightfield.lo(), elevation(fault.point.z));
+  for (Fault& fault : strata.faults) fault.point = Vec3(Vec2(fault.point) + heightfield.lo(), elevation(fault.point.z));
   if (file.map) {
     Image image = read_image(file.map->image);
     if (const std::optional<std::string> wanted = MapImage::misfit(image, heightfield))
-      throw InputError(file.map->place + ": \"image\": expected " + *wanted + ", got " + std::to_string(image.width) + " x " +
-                       std::to_string(image.height));
+      throw InputError(file.map->place + ": \"image\": expected " + *wanted + ", got " + std::to_string(image.width) +
+                       " x " + std::to_string(image.height));
     strata.map = MaterialMap(MapImage(std::move(image), heightfield), heightfield, file.map->entries);
   }
   return strata;

@@ -10,10 +10,10 @@ namespace {
 
 constexpr double kGain = 0.5;                          // Amplitude from octave to octave.
 constexpr double kLargestNoise = 0.70710678118654752;  // Of gradient noise with unit gradients in two dimensions: √½.
-constexpr double kLargestPosition = 1e15;  // Lattice indices fit their type; nobody's map is that large.
+constexpr double kLargestPosition = 1e15;              // Lattice indices fit their type; nobody's map is that large.
 
-// The slope of one octave n = Σ w_ab (g_ab · (p − ab)) is at most 1, of the convex sum of unit gradients, and along each
-// axis 15/8, the fade's largest slope, times the difference of two corners' terms, √2 at most in the middle of the
+// The slope of one octave n = Σ w_ab (g_ab · (p − ab)) is at most 1, of the convex sum of unit gradients, and along
+// each axis 15/8, the fade's largest slope, times the difference of two corners' terms, √2 at most in the middle of the
 // square: together 1 + √2 · 15/8 · √2.
 constexpr double kSteepestOctave = 1.0 + 2.0 * 15.0 / 8.0;
 
@@ -31,8 +31,7 @@ Vec2 lattice_gradient(std::uint64_t seed, int octaves, int octave, std::int64_t 
                                                               {0, -1},
                                                               {kDiagonal, -kDiagonal}}};
   constexpr std::uint64_t kRow = 0x9E3779B97F4A7C15ull;  // Odd: (i, j) pairs of a terrain get different indices.
-  const std::uint64_t index =
-      (static_cast<std::uint64_t>(j) * kRow + static_cast<std::uint64_t>(i)) * octaves + octave;
+  const std::uint64_t index = (static_cast<std::uint64_t>(j) * kRow + static_cast<std::uint64_t>(i)) * octaves + octave;
   const auto& d = kDirections[Rng(seed, "undulation", index).next() >> 61];
   return {d[0], d[1]};
 }
@@ -46,8 +45,7 @@ Vec2 towards(double azimuth) noexcept { return {std::sin(azimuth), std::cos(azim
 UndulationNoise::Square UndulationNoise::square(int octave, const Vec2& p) const noexcept {
   Square square{static_cast<std::int64_t>(std::floor(p.x)), static_cast<std::int64_t>(std::floor(p.y)), {}};
   for (int corner = 0; corner < 4; ++corner)
-    square.gradients[corner] =
-        lattice_gradient(seed_, kOctaves, octave, square.i + corner % 2, square.j + corner / 2);
+    square.gradients[corner] = lattice_gradient(seed_, kOctaves, octave, square.i + corner % 2, square.j + corner / 2);
   return square;
 }
 

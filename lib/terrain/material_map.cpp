@@ -35,8 +35,8 @@ MaterialMap::MaterialMap(const MapImage& image, const Heightfield& heightfield, 
   for (int row = 0; row < height; ++row)
     for (int column = 0; column < width; ++column) {
       const MapImage::Pixel pixel = image.pixel(lo.x + spacing * column, lo.y + spacing * row);
-      const auto entry = std::ranges::find_if(
-          entries, [&](const Entry& e) { return is_colour(image.image(), pixel, e.colour); });
+      const auto entry =
+          std::ranges::find_if(entries, [&](const Entry& e) { return is_colour(image.image(), pixel, e.colour); });
       nodes.push_back(entry == entries.end() ? std::nullopt : std::optional(entry->material));
     }
   std::vector<std::optional<Label>> named{std::nullopt};

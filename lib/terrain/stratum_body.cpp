@@ -11,8 +11,8 @@
 namespace outcrop {
 namespace {
 
-constexpr double kDeep = 1e6;            // Metres: inside of what has no boundary.
-constexpr std::size_t kChunk = 768;      // Points at a time: a mesher's brick of 9³.
+constexpr double kDeep = 1e6;        // Metres: inside of what has no boundary.
+constexpr std::size_t kChunk = 768;  // Points at a time: a mesher's brick of 9³.
 
 /// The heights at which a material begins and ends, and how far a height is from the nearest.
 class HeightIntervals {
@@ -61,7 +61,11 @@ class HeightIntervals {
 class StratumBody final : public Field {
  public:
   StratumBody(const Strata& strata, Label material, const Strata::Limb& limb, double inside, double outside)
-      : bedding_(strata), intervals_(strata, material), limb_(limb), wavelength_(strata.fold.wavelength), inside_(inside),
+      : bedding_(strata),
+        intervals_(strata, material),
+        limb_(limb),
+        wavelength_(strata.fold.wavelength),
+        inside_(inside),
         outside_(outside) {
     planar_ = 1.0 / std::hypot(1.0, std::tan(strata.dip));
     lipschitz_ = std::max(1.0, planar_ * std::hypot(1.0, bedding_.steepest()));
@@ -127,7 +131,9 @@ class StratumBody final : public Field {
     }
     std::array<double, kChunk> rise;
     const std::span<double> rises = std::span(rise).first(points.size());
-    terrain::each_position(points.x, points.y, rises, [this](double x, double y) { return bedding_.planar_rise({x, y}); });
+    terrain::each_position(points.x, points.y, rises, [this](double x, double y) {
+      return bedding_.planar_rise({x, y});
+    });
     const double slack = planar_ * bedding_.undulation();
     bool decided = true;
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -156,8 +162,9 @@ class StratumBody final : public Field {
     return std::max(value, wavelength_ * std::max(below, share - limb_.to));
   }
 
-  /// After the first `faults` faults. The hanging wall's body ends at the disc that slipped, and so does the footwall's:
-  /// each side's own value, no deeper than the disc is far, or the other's, no less than that; equal where the slip ends.
+  /// After the first `faults` faults. The hanging wall's body ends at the disc that slipped, and so does the
+  /// footwall's: each side's own value, no deeper than the disc is far, or the other's, no less than that; equal where
+  /// the slip ends.
   [[nodiscard]] double faulted(const Vec3& p, std::size_t faults) const noexcept {
     if (faults == 0) return unfaulted(p);
     const terrain::FaultPlane& fault = faults_[faults - 1];

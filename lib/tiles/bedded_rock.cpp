@@ -11,7 +11,8 @@ namespace outcrop {
 namespace {
 
 constexpr std::size_t kChunk = 768;  // Points at a time: a mesher's brick of 9³.
-constexpr double kWeld = 1e-3;       // Metres by which both sides of a closed joint overlap, or a film of air would part them.
+constexpr double kWeld =
+    1e-3;  // Metres by which both sides of a closed joint overlap, or a film of air would part them.
 
 class BeddedRock final : public Field {
  public:

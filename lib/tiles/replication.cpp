@@ -226,6 +226,12 @@ Replication::Replication(Rock rock, FieldPtr terrain, ReplicationOptions options
   arrangement_ = Arrangement(rock_.tile, reach, to_tile(options_.domain));
   place_blocks(*terrain, reach, task);
   if (options_.crack_floor) lipschitz_ += options_.closure_slope * options_.crack_floor->lipschitz();
+  // Asked no more; what they refer to may end.
+  options_.criterion = nullptr;
+  options_.weight = nullptr;
+  options_.slope = nullptr;
+  options_.visible = nullptr;
+  options_.body = nullptr;
 }
 
 std::vector<Block> Replication::make_shapes(double reach, const std::vector<char>& used) {
@@ -382,7 +388,8 @@ Replication::Reach Replication::reach_into_body(const Block& block, const Vec3& 
     for (int corner = 0; corner < 3; ++corner) {
       if (triangle[corner] > triangle[(corner + 1) % 3]) continue;  // Each edge once, in one of its two triangles.
       const Vec3 from = world_centre + rock_.world_from_tile * hull.vertices[triangle[corner]];
-      const Vec3 along = rock_.world_from_tile * (hull.vertices[triangle[(corner + 1) % 3]] - hull.vertices[triangle[corner]]);
+      const Vec3 along =
+          rock_.world_from_tile * (hull.vertices[triangle[(corner + 1) % 3]] - hull.vertices[triangle[corner]]);
       const double step = 1.0 / (body.lipschitz() * std::max(glm::length(along), 1e-9));
       for (double t = 0.0; t < 1.0 + kEdgeStep;) {
         const double value = body.value(from + std::min(t, 1.0) * along);

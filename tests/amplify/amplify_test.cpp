@@ -198,8 +198,8 @@ TEST(Amplify, BeddedRockPassesTheFieldContract) {
 /// Rock in the northern half, thinning out southwards.
 StrataFile ruled() {
   StrataFile file = small_blocks();
-  file.placement.where = PlacementRule{.kind = PlacementRule::Kind::Box, .soft = 12.0,
-                                       .box = {Vec3(-1e3, 25.0, -1e3), Vec3(1e3, 1e3, 1e3)}};
+  file.placement.where = PlacementRule{
+      .kind = PlacementRule::Kind::Box, .soft = 12.0, .box = {Vec3(-1e3, 25.0, -1e3), Vec3(1e3, 1e3, 1e3)}};
   return file;
 }
 

@@ -83,7 +83,8 @@ TEST_F(PlacementRules, RegionsAreMeasuredFromTheSouthWestCorner) {
 }
 
 TEST_F(PlacementRules, CombineByLeastLargestAndComplement) {
-  const std::string low = R"({"density": 0.25, "altitude": [0, 1000]})", high = R"({"density": 0.75, "altitude": [0, 1000]})";
+  const std::string low = R"({"density": 0.25, "altitude": [0, 1000]})",
+                    high = R"({"density": 0.75, "altitude": [0, 1000]})";
   EXPECT_DOUBLE_EQ(at(R"({"all": [)" + low + "," + high + "]}", middle_), 0.25);
   EXPECT_DOUBLE_EQ(at(R"({"any": [)" + low + "," + high + "]}", middle_), 0.75);
   EXPECT_DOUBLE_EQ(at(R"({"not": )" + low + "}", middle_), 0.75);
@@ -125,7 +126,8 @@ TEST_F(PlacementRules, SoftValuesAreContinuousAndWithinTheUnitInterval) {
 }
 
 TEST_F(PlacementRules, MasksReadWhiteAsOne) {
-  Image image{.width = 41, .height = 41, .channels = 1, .pixels = std::vector<float>(41 * 41, 0.0f), .channel_names = {"Y"}};
+  Image image{
+      .width = 41, .height = 41, .channels = 1, .pixels = std::vector<float>(41 * 41, 0.0f), .channel_names = {"Y"}};
   image.at(20, 20) = 1.0f;
   write_image(folder_ / "mask.exr", image);
   EXPECT_DOUBLE_EQ(at(R"({"mask": "mask.exr"})", middle_), 1.0);
@@ -134,7 +136,9 @@ TEST_F(PlacementRules, MasksReadWhiteAsOne) {
 }
 
 TEST_F(PlacementRules, MistakesAreNamedWithTheirPlace) {
-  write_image(folder_ / "small.exr", {.width = 30, .height = 20, .channels = 1, .pixels = std::vector<float>(600, 1.0f), .channel_names = {"Y"}});
+  write_image(
+      folder_ / "small.exr",
+      {.width = 30, .height = 20, .channels = 1, .pixels = std::vector<float>(600, 1.0f), .channel_names = {"Y"}});
   struct Mistake {
     const char* text;
     std::vector<std::string> says;
@@ -163,7 +167,8 @@ TEST_F(PlacementRules, MistakesAreNamedWithTheirPlace) {
     const std::string error = error_of(mistake.text);
     EXPECT_EQ(error.find("rules.json:"), 0u) << mistake.text << "\n" << error;
     EXPECT_EQ(error.find('\n'), std::string::npos) << error;
-    for (const std::string& word : mistake.says) EXPECT_NE(error.find(word), std::string::npos) << mistake.text << "\n" << error;
+    for (const std::string& word : mistake.says)
+      EXPECT_NE(error.find(word), std::string::npos) << mistake.text << "\n" << error;
   }
 }
 

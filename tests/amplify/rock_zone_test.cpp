@@ -83,8 +83,12 @@ TEST(RockZone, IsExactlyNothingWhereItsWeightIsNothing) {
   const Heightfield heightfield = test::terraces();
   const auto weight = [](const Vec3& p) { return std::clamp((p.y - 20.0) / 15.0, 0.0, 1.0) * (p.z < 21.0); };
   const RockZone whole = zone_of(heightfield);
-  const RockZone zone = make_rock_zone(heightfield, {.lo = heightfield.lo(), .hi = heightfield.hi(), .slope = kSlope, .reach = 3.0,
-                                                     .spacing = 0.5, .weight_at = weight});
+  const RockZone zone = make_rock_zone(heightfield, {.lo = heightfield.lo(),
+                                                     .hi = heightfield.hi(),
+                                                     .slope = kSlope,
+                                                     .reach = 3.0,
+                                                     .spacing = 0.5,
+                                                     .weight_at = weight});
   Rng rng(2, "rock zone test");
   int thin = 0;
   for (int i = 0; i < 50'000; ++i) {
@@ -104,17 +108,21 @@ TEST(RockZone, IsExactlyNothingWhereItsWeightIsNothing) {
 TEST(RockZone, WithdrawsTheGroundBySquareOfALevelWeight) {
   const Heightfield heightfield = test::terraces();
   const RockZone whole = zone_of(heightfield);
-  const RockZone half = make_rock_zone(heightfield, {.lo = heightfield.lo(), .hi = heightfield.hi(), .slope = kSlope, .reach = 3.0,
-                                                     .spacing = 0.5, .weight_at = [](const Vec3&) { return 0.5; }});
+  const RockZone half = make_rock_zone(heightfield, {.lo = heightfield.lo(),
+                                                     .hi = heightfield.hi(),
+                                                     .slope = kSlope,
+                                                     .reach = 3.0,
+                                                     .spacing = 0.5,
+                                                     .weight_at = [](const Vec3&) { return 0.5; }});
   for (double x = 1.0; x < 63.0; x += 0.7)
-    for (double y = 1.0; y < 63.0; y += 0.9)
-      ASSERT_NEAR(half.recess.at(x, y).h, 0.25 * whole.recess.at(x, y).h, 1e-4);
+    for (double y = 1.0; y < 63.0; y += 0.9) ASSERT_NEAR(half.recess.at(x, y).h, 0.25 * whole.recess.at(x, y).h, 1e-4);
 }
 
 TEST(RockZone, BlocksThinOutTowardsTheRim) {
   const Heightfield heightfield = test::terraces();
-  const RockZone zone = make_rock_zone(heightfield, {.lo = heightfield.lo(), .hi = heightfield.hi(), .slope = kSlope, .reach = 3.0,
-                                                     .spacing = 0.5, .rim = 1.0});
+  const RockZone zone = make_rock_zone(
+      heightfield,
+      {.lo = heightfield.lo(), .hi = heightfield.hi(), .slope = kSlope, .reach = 3.0, .spacing = 0.5, .rim = 1.0});
   ASSERT_TRUE(zone.weighted);
   int part = 0, whole = 0;
   for (double x = 1.0; x < 63.0; x += 0.7)

@@ -134,7 +134,8 @@ TEST_F(StrataFileTest, ReliefPeriodsDivideTheTile) {
 }
 
 TEST_F(StrataFileTest, SequencesOfThicknessesRepeatFromTheirBase) {
-  const StrataFile file = read(R"({"materials": [{"name": "a"}, {"name": "b"}], "strata": {"tops": "relative", "base": 0.5, "repeat": true,
+  const StrataFile file =
+      read(R"({"materials": [{"name": "a"}, {"name": "b"}], "strata": {"tops": "relative", "base": 0.5, "repeat": true,
     "layers": [{"material": "a", "thickness": [1, 2, 3]}, {"material": "b", "thickness": [4, 5]}]}})");
   ElevationGrid grid{.width = 2, .height = 2, .elevations = {100.0f, 100.0f, 120.0f, 120.0f}};
   const Strata strata = strata_on(file, Heightfield(grid));
@@ -148,8 +149,10 @@ TEST_F(StrataFileTest, SequencesOfThicknessesRepeatFromTheirBase) {
 }
 
 TEST_F(StrataFileTest, FoldsFaultsAndMapsArrive) {
-  write_image(folder_ / "map.exr", {.width = 3, .height = 3, .channels = 1, .pixels = {0, 0, 0, 0, 7, 0, 0, 0, 0}, .channel_names = {"Y"}});
-  const StrataFile file = read(R"({"materials": [{"name": "a"}, {"name": "b", "where": {"slope_deg": [60, null], "soft": 9}}], "strata": {
+  write_image(folder_ / "map.exr",
+              {.width = 3, .height = 3, .channels = 1, .pixels = {0, 0, 0, 0, 7, 0, 0, 0, 0}, .channel_names = {"Y"}});
+  const StrataFile file =
+      read(R"({"materials": [{"name": "a"}, {"name": "b", "where": {"slope_deg": [60, null], "soft": 9}}], "strata": {
     "fold": {"amplitude": 3, "wavelength": 40, "axis_deg": 90},
     "faults": [{"point": [1, 2, 3], "dip_deg": 60, "dip_direction_deg": 180, "slip": -4, "extent": 20}],
     "map": {"image": "map.exr", "materials": [{"colour": 7, "material": "b"}]}}, "placement": {"rim": 2, "where": {"altitude": [null, 9]}}})");
@@ -331,19 +334,22 @@ TEST_F(StrataFileTest, MistakesAreNamedWithTheirPlace) {
       {"{\"strata\": {\"layers\": [{\"material\": \"marble\"}]}}", {":1:25:", "marble", "rock"}},
       {"{\"strata\": {\"layers\": [{\"top\": 3}]}}", {"material"}},
       {"{\"strata\": {\"layers\": [{\"material\": \"rock\"}, {\"material\": \"rock\"}]}}", {"top"}},
-      {"{\"strata\": {\"layers\": [{\"material\": \"rock\", \"top\": 9}, {\"material\": \"rock\", \"top\": 8}]}}", {"top", "8"}},
+      {"{\"strata\": {\"layers\": [{\"material\": \"rock\", \"top\": 9}, {\"material\": \"rock\", \"top\": 8}]}}",
+       {"top", "8"}},
       {"{\"strata\": {\"tops\": \"absolute\"}}", {"tops", "relative", "absolute"}},
       {R"({"strata": {"repeat": true}})", {":1:13:", "layers to repeat"}},
       {R"({"strata": {"repeat": true, "layers": [{"material": "rock"}]}})", {"thickness", "repeats"}},
       {R"({"strata": {"layers": [{"material": "rock", "top": 3, "thickness": 2}]}})", {"both"}},
-      {R"({"strata": {"layers": [{"material": "rock", "top": 3}, {"material": "rock", "thickness": 2}]}})", {":1:56:", "all"}},
+      {R"({"strata": {"layers": [{"material": "rock", "top": 3}, {"material": "rock", "thickness": 2}]}})",
+       {":1:56:", "all"}},
       {R"({"strata": {"layers": [{"material": "rock", "thickness": [2, 3]}]}})", {"thickness", "number"}},
       {R"({"strata": {"layers": [{"material": "rock", "thickness": 0}]}})", {"thickness", "0.001", "0"}},
       {R"({"strata": {"base": 5, "repeat": true, "layers": [{"material": "rock", "top": 4}]}})", {"top", "base"}},
       {R"({"strata": {"fold": {"amplitude": 50, "wavelength": 100}}})", {"quarter", "72 degrees"}},
       {R"({"strata": {"faults": [{"dip_deg": 60, "slip": 3}]}})", {":1:24:", "point"}},
       {R"({"strata": {"faults": [{"point": [0, 0, 0], "dip_deg": 91, "slip": 3}]}})", {"dip_deg", "90", "91"}},
-      {R"({"strata": {"faults": [{"point": [0, 0, 0], "dip_deg": 60, "slip": -8, "extent": 10}]}})", {"extent", "16", "10"}},
+      {R"({"strata": {"faults": [{"point": [0, 0, 0], "dip_deg": 60, "slip": -8, "extent": 10}]}})",
+       {"extent", "16", "10"}},
       {R"({"strata": {"map": {"materials": []}}})", {"image"}},
       {R"({"strata": {"map": {"image": "gone.png", "materials": []}}})", {":1:21:", "gone.png"}},
       {R"({"materials": [{"where": {"altitude": [3, 1]}}]})", {":1:27:", "altitude", "lower"}},

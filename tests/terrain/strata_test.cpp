@@ -185,8 +185,8 @@ TEST(Strata, TheHangingWallOfANormalFaultLiesSlipFurtherDownTheDip) {
 }
 
 TEST(Strata, YoungerFaultsMoveOlderOnes) {
-  // The old vertical fault at x = 0 drops the east by 3 m. The young one, of 45° to the east, moves what lies above it by
-  // (5, 0, −5), the old fault included.
+  // The old vertical fault at x = 0 drops the east by 3 m. The young one, of 45° to the east, moves what lies above it
+  // by (5, 0, −5), the old fault included.
   Strata strata;
   strata.faults = {{.point = {0, 0, 0}, .dip = radians(90.0), .dip_direction = radians(90.0), .slip = 3.0},
                    {.point = {0, 0, 0}, .dip = radians(45.0), .dip_direction = radians(90.0), .slip = std::sqrt(50.0)}};
@@ -215,7 +215,9 @@ Strata hard_strata(Seed seed) {
     strata.faults.push_back({point, dip, direction, rng.uniform(-6.0, 6.0), extent});
   }
   if (seed % 5 < 3) strata.base = -4.0;
-  strata.layers = {{.material = 0, .top = -1.0}, {.material = 1, .top = 3.0}, {.material = 0, .top = 4.0},
+  strata.layers = {{.material = 0, .top = -1.0},
+                   {.material = 1, .top = 3.0},
+                   {.material = 0, .top = 4.0},
                    {.material = 2, .top = 9.0}};
   return strata;
 }

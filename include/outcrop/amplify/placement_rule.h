@@ -55,8 +55,8 @@ struct PlacementRule {
 
 /// What rules look at.
 struct RuleSite {
-  Vec3 position{0.0};   ///< World: a point of the surface, or an anchor of a block.
-  Vec2 ground{0.0};     ///< Where slope, aspect and curvature are taken: the rock's surface next to an anchor.
+  Vec3 position{0.0};  ///< World: a point of the surface, or an anchor of a block.
+  Vec2 ground{0.0};    ///< Where slope, aspect and curvature are taken: the rock's surface next to an anchor.
   std::optional<double> distance;  ///< Of an anchor to the surface, metres; none: the ground itself.
   Label material = 0;
 };
@@ -65,7 +65,8 @@ struct RuleSite {
 using RuleValue = std::function<double(const RuleSite&)>;
 
 /// @param block_size  Metres, > 0: the scale of rules that name none.
-/// @throws InputError naming the rule's place for an image that does not fit the terrain and a water level outside of it.
+/// @throws InputError naming the rule's place for an image that does not fit the terrain and a water level outside of
+/// it.
 [[nodiscard]] RuleValue rule_value(const PlacementRule& rule, const Heightfield& heightfield, double block_size);
 
 /// Two sides of a closed polygon that cross or touch without being neighbours, by index; nothing when it is simple.

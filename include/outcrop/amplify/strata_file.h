@@ -60,9 +60,10 @@ struct StrataFile {
   /// As the file gives it: `reference` and the points of faults are relative to the terrain's south-west corner, tops
   /// as the next three say. strata_on() converts.
   Strata strata;
-  bool relative_tops = false;  ///< Elevations of the strata are relative to the terrain: 0 its lowest, 1 its highest point.
-  bool thicknesses = false;    ///< Tops are metres above `base` instead.
-  double base = 0.0;           ///< Elevation of the bottom of the lowest layer: of those that repeat, or of thicknesses.
+  bool relative_tops =
+      false;  ///< Elevations of the strata are relative to the terrain: 0 its lowest, 1 its highest point.
+  bool thicknesses = false;  ///< Tops are metres above `base` instead.
+  double base = 0.0;         ///< Elevation of the bottom of the lowest layer: of those that repeat, or of thicknesses.
   std::optional<MapFile> map;
   Placement placement;
   LargeFractureRules large_fractures;

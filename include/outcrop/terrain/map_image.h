@@ -12,8 +12,8 @@ namespace outcrop {
 /// A picture that covers a terrain: row 0 is the north edge, the last column the east edge.
 class MapImage {
  public:
-  /// An image fits when it has as many pixels as the heightmap samples, each then a sample's, or when its pixels, spread
-  /// over the terrain, are square to within one pixel of its sides.
+  /// An image fits when it has as many pixels as the heightmap samples, each then a sample's, or when its pixels,
+  /// spread over the terrain, are square to within one pixel of its sides.
   /// @return what would fit, in words; nothing when the image does.
   [[nodiscard]] static std::optional<std::string> misfit(const Image& image, const Heightfield& heightfield);
 

@@ -14,8 +14,8 @@ struct BeddingJoint {
 
 /// max(rock, body + half gap): rock as far as its body (negative inside) reaches, less half of the crack along it.
 ///
-/// Two bodies with a common boundary leave a crack of the aperture, closed at depth: no point is in the rock of both, but
-/// for a millimetre where it is closed. Labels: rock's. Lipschitz: the larger of rock's and the cut's.
+/// Two bodies with a common boundary leave a crack of the aperture, closed at depth: no point is in the rock of both,
+/// but for a millimetre where it is closed. Labels: rock's. Lipschitz: the larger of rock's and the cut's.
 [[nodiscard]] FieldPtr bedded_rock(FieldPtr rock, FieldPtr body, BeddingJoint joint);
 
 }  // namespace outcrop
