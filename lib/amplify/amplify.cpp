@@ -147,14 +147,14 @@ class Rules {
     everywhere_ = bind(file.placement.where);
     for (const RockMaterial& material : file.materials) of_material_.push_back(bind(material.where));
   }
-  [[nodiscard]] bool any() const {
-    return everywhere_ || std::ranges::any_of(of_material_, [](const RuleValue& rule) { return rule != nullptr; });
+  [[nodiscard]] bool any_of_place() const { return everywhere_ != nullptr; }
+  [[nodiscard]] bool any_of_rock() const {
+    return std::ranges::any_of(of_material_, [](const RuleValue& rule) { return rule != nullptr; });
   }
-  [[nodiscard]] double weight(const RuleSite& site) const {
-    double weight = 1.0;
-    for (const RuleValue* rule : {&everywhere_, &of_material_[site.material]})
-      if (*rule && weight > 0.0) weight = std::min(weight, (*rule)(site));
-    return weight;
+  [[nodiscard]] double of_place(const RuleSite& site) const { return everywhere_ ? everywhere_(site) : 1.0; }
+  [[nodiscard]] double of_rock(const RuleSite& site) const {
+    const RuleValue& rule = of_material_[site.material];
+    return rule ? rule(site) : 1.0;
   }
 
  private:
@@ -217,7 +217,7 @@ struct PlacedScene {
           const Vec2 ground = zone.ground.at(Vec2(anchor.position));
           const RuleSite site{
               .position = anchor.position, .ground = ground, .distance = anchor.distance, .material = label};
-          return zone.rim.at(ground.x, ground.y).h * rules.weight(site);
+          return zone.rim.at(ground.x, ground.y).h * std::min(rules.of_place(site), rules.of_rock(site));
         };
       auto node = std::make_shared<Replication>(Rock{.tile = rock.tile,
                                                      .warp = warp,
@@ -331,11 +331,12 @@ Amplified amplify(const Heightfield& heightfield, const StrataFile& strata_file,
   const double spacing = std::max(reach / kRasterPerReach, std::sqrt(zone_extent.x * zone_extent.y / kRasterNodes));
   const double largest_block = reach / kReachInBlocks;
   const Rules rules(strata_file, heightfield, std::max(largest_block, options.resolution));
-  std::function<double(const Vec3&)> weight_at;
-  if (rules.any())
-    weight_at = [&](const Vec3& p) {
-      return rules.weight({.position = p, .ground = Vec2(p), .distance = {}, .material = strata.material(p)});
-    };
+  const auto surface = [&](const Vec3& p) {
+    return RuleSite{.position = p, .ground = Vec2(p), .distance = {}, .material = strata.material(p)};
+  };
+  std::function<double(const Vec3&)> weight_at, rock_weight_at;
+  if (rules.any_of_place()) weight_at = [&](const Vec3& p) { return rules.of_place(surface(p)); };
+  if (rules.any_of_rock()) rock_weight_at = [&](const Vec3& p) { return rules.of_rock(surface(p)); };
   if (reach > 0.0)
     zone = make_rock_zone(heightfield,
                           {.lo = lo - margin,
@@ -347,6 +348,7 @@ Amplified amplify(const Heightfield& heightfield, const StrataFile& strata_file,
                            .spacing = spacing,
                            .block_size = largest_block,
                            .weight_at = weight_at,
+                           .rock_weight_at = rock_weight_at,
                            .rim = placement.rim * largest_block},
                           task);
 

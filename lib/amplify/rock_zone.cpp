@@ -25,6 +25,7 @@ constexpr double kProbesPerCell = 2.0;   // Slopes looked at across a cell of th
 constexpr int kMostProbes = 4;           // … but no more than this many across a cell of the raster.
 constexpr int kRuleMargin =
     2;  // Nodes of the coarse raster that a rule's border loses: bilinear weights are 0 beyond it.
+constexpr double kRockMargin = 0.5;      // Of the reach: how far blocks of other rock reach into one that has none.
 constexpr double kDownhill = 0.5;  // Tangent of a fall that counts as down to where the ground withdraws.
 constexpr double kAdvanceWeight =
     4.0;  // The advance is whole where the weight is a quarter: blocks stand out of thin rock, too.
@@ -235,22 +236,43 @@ Envelopes make_envelopes(const Heightfield& heightfield, const Raster& raster, d
           rule ? raster.layer(std::move(weight)) : RasterLayer()};
 }
 
-/// The weight on a raster, 0 at nodes within kRuleMargin of one where it is 0: 0 wherever weight_at is.
-///
-/// @param wanted  Which nodes are asked; the rest has 1.
+/// f(point of the surface) on a raster, [0, 1]; 1 at nodes that are not wanted, and where there is no f.
 template <class Wanted>
-RasterLayer make_weight(const Heightfield& heightfield, const Raster& raster,
-                        const std::function<double(const Vec3&)>& weight_at, const Wanted& wanted) {
-  std::vector<float> asked(raster.count(), 1.0f), weight(raster.count());
+std::vector<float> weights_on(const Heightfield& heightfield, const Raster& raster,
+                              const std::function<double(const Vec3&)>& f, const Wanted& wanted) {
+  std::vector<float> weights(raster.count(), 1.0f);
+  if (!f) return weights;
   raster.for_each_node([&](std::size_t i, int column, int row) {
     const Vec2 p = raster.node(column, row);
-    if (wanted(p)) asked[i] = static_cast<float>(std::clamp(weight_at(Vec3(p, heightfield.at(p.x, p.y).h)), 0.0, 1.0));
+    if (wanted(p)) weights[i] = static_cast<float>(std::clamp(f(Vec3(p, heightfield.at(p.x, p.y).h)), 0.0, 1.0));
   });
+  return weights;
+}
+
+/// The weight of the ground: 0 wherever weight_at is, which nodes within kRuleMargin of such a one make sure.
+///
+/// @param near  Calls back for a position: is there steep ground within a distance?
+template <class Near>
+RasterLayer make_weight(const Heightfield& heightfield, const Raster& raster, const RockZoneOptions& options,
+                        const Near& near) {
+  const double half_reach = kRockMargin * options.reach, margin = (kRuleMargin + 3) * raster.spacing;
+  const std::vector<float> place =
+      weights_on(heightfield, raster, options.weight_at, [&](const Vec2& p) { return near(p, margin); });
+  const std::vector<float> rock = weights_on(heightfield, raster, options.rock_weight_at,
+                                       [&](const Vec2& p) { return near(p, margin + half_reach); });
+  std::vector<float> weight(raster.count(), 1.0f);
+  const std::vector<Neighbour> neighbours = disc(half_reach, half_reach, raster.spacing);
   raster.for_each_node([&](std::size_t i, int column, int row) {
-    weight[i] = asked[i];
+    if (!near(raster.node(column, row), margin)) return;
+    weight[i] = place[i];
     for (int dy = -kRuleMargin; dy <= kRuleMargin; ++dy)
       for (int dx = -kRuleMargin; dx <= kRuleMargin; ++dx)
-        if (asked[raster.neighbour(column, row, dx, dy)] <= 0.0f) weight[i] = 0.0f;
+        if (place[raster.neighbour(column, row, dx, dy)] <= 0.0f) weight[i] = 0.0f;
+    if (!options.rock_weight_at) return;
+    float largest = 0.0f;
+    for (const Neighbour& n : neighbours)
+      largest = std::max(largest, n.recess * rock[raster.neighbour(column, row, n.dx, n.dy)]);
+    weight[i] = std::min(weight[i], largest);
   });
   return raster.layer(std::move(weight));
 }
@@ -302,13 +324,14 @@ RockZone make_rock_zone(const Heightfield& heightfield, const RockZoneOptions& o
   if (options.reach_at)
     raster.for_each_node([&](std::size_t i, int column, int row) { steep[i] = steep[i] && reach_at(raster.node(column, row)) > 0.0; });
   close_ledges(raster, steep, ledge);
-  RockZone zone{.weighted = options.weight_at || options.rim > 0.0, .slope = options.slope};
+  RockZone zone{.weighted = options.weight_at || options.rock_weight_at || options.rim > 0.0, .slope = options.slope};
   RasterLayer rule;
-  if (options.weight_at) {
-    const double about = (kRuleMargin + 3) * coarse.spacing;
-    const std::vector<float> distance = raster.distance(steep, true, about + 2.0 * raster.spacing);
-    rule = make_weight(heightfield, coarse, options.weight_at,
-                       [&](const Vec2& p) { return distance[raster.nearest(p)] <= about; });
+  const bool ruled = options.weight_at || options.rock_weight_at;
+  if (ruled) {
+    const double farthest = (kRuleMargin + 5) * coarse.spacing + options.reach;
+    const std::vector<float> distance = raster.distance(steep, true, farthest);
+    rule = make_weight(heightfield, coarse, options,
+                       [&](const Vec2& p, double radius) { return distance[raster.nearest(p)] <= radius; });
     raster.for_each_node([&](std::size_t i, int column, int row) {
       const Vec2 p = raster.node(column, row);
       steep[i] = steep[i] && rule.at(p.x, p.y).h > 0.0;
@@ -319,7 +342,7 @@ RockZone make_rock_zone(const Heightfield& heightfield, const RockZoneOptions& o
   const auto near_steep = [&](const Vec2& p, double radius) { return to_steep[raster.nearest(p)] <= radius; };
   const Envelopes envelopes = make_envelopes(
       heightfield, coarse, options.recess, [&](const Vec2& p) { return near_steep(p, 2.0 * coarse.spacing); }, reach_at,
-      options.weight_at ? &rule : nullptr, task);
+      ruled ? &rule : nullptr, task);
   std::vector<float> nearby(coarse.count());
   coarse.for_each_node([&](std::size_t i, int column, int row) {
     nearby[i] = near_steep(coarse.node(column, row), largest_radius + coarse.spacing) ? 1.0f : 0.0f;
@@ -327,7 +350,7 @@ RockZone make_rock_zone(const Heightfield& heightfield, const RockZoneOptions& o
 
   const std::vector<float> rim = distance_to_rim(raster, steep, largest_radius / kAdvanceGrowth + raster.spacing);
   const auto rim_weight = [&](std::size_t i) { return options.rim > 0.0 ? std::min(rim[i] / options.rim, 1.0) : 1.0; };
-  const auto weight_of_rule = [&](const Vec2& p) { return options.weight_at ? rule.at(p.x, p.y).h : 1.0; };
+  const auto weight_of_rule = [&](const Vec2& p) { return ruled ? rule.at(p.x, p.y).h : 1.0; };
   if (zone.weighted) {
     std::vector<float> rims(coarse.count()), weights(coarse.count());
     std::vector<char> marked(coarse.count());
@@ -357,7 +380,7 @@ RockZone make_rock_zone(const Heightfield& heightfield, const RockZoneOptions& o
     if (!zone.weighted) return;
     const double weight = weight_of_rule(p) * rim_weight(i);
     // Where few blocks stand the base must not gape as a pit, nor reach down to where none do.
-    const double withdrawn = options.weight_at ? std::min<double>(weight, envelopes.weight.at(p.x, p.y).h) : weight;
+    const double withdrawn = ruled ? std::min<double>(weight, envelopes.weight.at(p.x, p.y).h) : weight;
     recess[i] *= static_cast<float>(withdrawn * withdrawn);
     advance[i] *= static_cast<float>(std::min(kAdvanceWeight * weight, 1.0));
   });

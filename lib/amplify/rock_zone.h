@@ -24,6 +24,9 @@ struct RockZoneOptions {
   /// How much rock a point of the surface may have, [0, 1]; 0: left alone. Both envelopes follow it. Null: 1
   /// everywhere.
   std::function<double(const Vec3&)> weight_at;
+  /// The same of the rock at that point, whose neighbours' blocks may reach beyond their own beds: the largest within half
+  /// the reach counts. Null: 1 everywhere.
+  std::function<double(const Vec3&)> rock_weight_at;
   double rim = 0.0;  ///< Metres from the rim of the steep ground over which the weight grows from 0, ≥ 0.
 };
 

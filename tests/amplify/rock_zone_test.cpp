@@ -105,6 +105,23 @@ TEST(RockZone, IsExactlyNothingWhereItsWeightIsNothing) {
   EXPECT_GT(thin, 300);
 }
 
+TEST(RockZone, ReachesIntoRockOfNoWeightAsFarAsBlocksDo) {
+  const Heightfield heightfield = test::terraces();
+  const auto weight = [](const Vec3& p) { return p.y > 20.0 && (p.y < 30.0 || p.y > 31.0) ? 1.0 : 0.0; };
+  const RockZone zone = make_rock_zone(heightfield, {.lo = heightfield.lo(),
+                                                     .hi = heightfield.hi(),
+                                                     .slope = kSlope,
+                                                     .reach = 3.0,
+                                                     .spacing = 0.5,
+                                                     .rock_weight_at = weight});
+  int within = 0;
+  for (double x = 1.0; x < 63.0; x += 0.3) {
+    within += zone.recess.at(x, 30.5).h > 0.0;
+    ASSERT_EQ(zone.recess.at(x, 17.0).h, 0.0) << "more than half a reach from any rock";
+  }
+  EXPECT_GT(within, 10) << "a thin bed between two that have rock";
+}
+
 TEST(RockZone, WithdrawsTheGroundBySquareOfALevelWeight) {
   const Heightfield heightfield = test::terraces();
   const RockZone whole = zone_of(heightfield);
