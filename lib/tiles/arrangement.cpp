@@ -9,7 +9,7 @@ namespace {
 constexpr double kFarthest = 1 << 20;    // Slabs, rods and copies from the origin.
 constexpr double kLeastInner = 1e-3;     // Metres from a block's centre to its nearest plane.
 constexpr double kSlack = 1e-4;          // Metres: rounding.
-constexpr double kOffPlace = 0.1;        // Of the distance between walls. More would show in the angles between joints.
+constexpr double kOffPlace = 0.08;       // Of the distance between walls. More would show in the angles between joints.
 constexpr int kSizes = 3;                // Between two walls: both may be off towards each other, or away.
 constexpr double kMostStretch = 1.0 + 2.0 * kOffPlace;
 constexpr double kLeastStretch = 0.5;    // Of any length, where walls meet at 35°.

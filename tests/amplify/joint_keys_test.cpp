@@ -102,7 +102,7 @@ TEST_F(JointKeys, OfTheListedTypesMakeTheTypesTilesToTheBit) {
     const BlockType type = kBlockTypes[m];
     EXPECT_EQ(file.materials[m].name, name(type));
     const Tile listed = make_tile(tile_in_place(file, m, 5.0), 3);
-    const Tile own = make_tile({.type = type}, 3);
+    const Tile own = make_tile({.type = type, .variants = RockMaterial{}.variants}, 3);
     ASSERT_EQ(listed.blocks.size(), own.blocks.size()) << name(type);
     for (std::size_t b = 0; b < own.blocks.size(); ++b) {
       ASSERT_EQ(listed.blocks[b].centre, own.blocks[b].centre) << name(type);

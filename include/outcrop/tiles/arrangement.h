@@ -18,7 +18,7 @@ namespace outcrop {
 ///
 /// A copy is numbered along its rod, by its rod, and by its layer, from the base copies (0, 0, 0), (0, 0, 1), …: where it
 /// stands and what it holds are functions of these numbers and the layout's seed alone, whatever the domain. Each wall
-/// stands a tenth of the distance between walls before or behind its place in the lattice, and the blocks between two are
+/// stands 8 % of the distance between walls before or behind its place in the lattice, and the blocks between two are
 /// stretched along with them; layers that lie on each other are turned against each other by some degrees instead of having
 /// rods of different thickness.
 class Arrangement {
