@@ -245,7 +245,7 @@ void ChunkBuilder::gather_coned(const Brick& brick) {
   const int edge = 1 << brick.level;
   std::vector<std::uint32_t> edges;
   std::vector<Triangle> triangles;
-  for (std::size_t cell = 0; cell < transition_.mixed().size(); ++cell) {
+  for (std::size_t cell = 0; cell < transition_.size(); ++cell) {
     ++chunk_.cells;
     edges.clear();
     triangles.clear();
@@ -265,7 +265,7 @@ void ChunkBuilder::gather_coned(const Brick& brick) {
       continue;
     }
     for (std::uint32_t& v : loop) v = half_vertex(brick, {int(edges[v] >> 16), int(edges[v] & 0xFFFF)});
-    fans_.add(brick.first() + edge * transition_.mixed()[cell], edge, loop, {}, options_.tolerance);
+    fans_.add(brick.first() + edge * transition_.place(cell), edge, loop, {}, options_.tolerance);
     fan_source_.push_back(cell);
   }
 }
