@@ -91,6 +91,7 @@ class ChunkBuilder {
   RootSolver solver_;
   CellFans fans_;
   std::vector<Apex> creases_;
+  std::vector<Triangle> coned_triangles_;  ///< Of one cell, of its edges.
   std::vector<std::size_t> fan_source_;   ///< Of each fan: the first triangle that it replaces, or the coned cell.
   std::vector<BorderVertex> shared_;      ///< Vertices on faces of bricks, in order.
   FlatMap<std::uint32_t> shared_number_;  ///< By edge: the place in `shared_`, and 1.

@@ -21,6 +21,12 @@ constexpr double kCertain = 6.0;
 constexpr std::size_t kFirstLook = 8;
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
+/// The octant of its brick in which a cell lies.
+std::size_t octant_of(int node) {
+  const IVec3 half = node_place(node) / (kBrickCells / 2);
+  return static_cast<std::size_t>(half.x + 2 * half.y + 4 * half.z);
+}
+
 /// flags[n] = 1 where values n and n + step have one sign, and what is on either side of them leads past 0 within a
 /// step. Where the line or the brick ends there may be flags that mean nothing.
 OUTCROP_SIMD_CLONES
@@ -177,8 +183,7 @@ double BrickError::deviation(const Lattice& lattice, const Field& field, const B
       for (const Vec3& w : weights) off = std::max(off, std::abs(f_[i++] - (w.x * a.value + w.y * b.value + w.z * c.value)));
     });
     off /= slope(per_metre, values, cell.node);
-    const IVec3 half = node_place(cell.node) / (kBrickCells / 2);
-    double& octant = octants_[half.x + 2 * half.y + 4 * half.z];
+    double& octant = octants_[octant_of(cell.node)];
     octant = std::max(octant, off);
     most = std::max(most, off);
   }
@@ -196,11 +201,14 @@ double BrickError::measure(double enough, const Lattice& lattice, const Field& f
     error = std::max(error, deviation(lattice, field, brick, values, cells, subdivisions));
     return error > enough;
   };
-  if (brick.level == 1) {
-    for (; seen * kFirstLook < cells_.size(); ++seen) std::swap(cells_[seen], cells_[seen * kFirstLook]);
-    const std::size_t some = std::exchange(seen, 0);
-    if (look(some, 1)) return error;
-    seen = some;
+  for (; seen * kFirstLook < cells_.size(); ++seen) std::swap(cells_[seen], cells_[seen * kFirstLook]);
+  const std::size_t some = std::exchange(seen, 0);
+  if (look(some, 1) && brick.level == 1) return error;
+  seen = some;
+  if (error > kCertain * enough) {
+    // It is to be split, and so are octants that are off by so much: they need no second look.
+    cells_.erase(cells_.begin(), cells_.begin() + static_cast<std::ptrdiff_t>(std::exchange(seen, 0)));
+    std::erase_if(cells_, [&](const MixedCell& cell) { return octants_[octant_of(cell.node)] > kCertain * enough; });
   }
   if (look(cells_.size(), 1)) return error;
   error = std::max(error, hidden(enough, lattice, field, brick, values));
