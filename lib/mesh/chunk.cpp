@@ -143,7 +143,7 @@ Chunk ChunkBuilder::build(const Cell& cell, int level) {
   shared_number_.clear();
   creases_.clear();
   if (tree_)
-    descend(cell, level);
+    descend(cell, level, {});
   else
     descend_uniformly(cell.index, level, cell.field->narrow(lattice_.box(cell.index, level)));
   join_creases(lattice_, creases_, chunk_.positions, chunk_.normals, chunk_.triangles);
@@ -154,7 +154,7 @@ Chunk ChunkBuilder::build(const Cell& cell, int level) {
 }
 
 void ChunkBuilder::descend_uniformly(const IVec3& index, int level, const FieldPtr& narrowed) {
-  if (level == 0) return visit({index, level}, *narrowed, nullptr);
+  if (level == 0) return visit({index, level}, *narrowed, nullptr, {});
   for (int octant = 0; octant < 8; ++octant) {
     const IVec3 child = child_index(index, octant);
     if (!lattice_.holds(child, level - 1)) continue;
@@ -163,21 +163,23 @@ void ChunkBuilder::descend_uniformly(const IVec3& index, int level, const FieldP
   }
 }
 
-void ChunkBuilder::descend(const Cell& cell, int level) {
+void ChunkBuilder::descend(const Cell& cell, int level, std::span<const double> parent) {
   const BrickPlace place{cell.index, level};
   const KnownCell* known = known_->find(BrickTree::key(place));
   const Box box = lattice_.box(cell.index, level);
   if (tree_->is_split(place)) {
     const FieldPtr field = known ? known->field : cell.field->narrow(box);
-    for (int octant = 0; octant < 8; ++octant) descend({child_index(cell.index, octant), field}, level - 1);
+    const std::span<const double> values = known ? std::span(known->values) : std::span<const double>();
+    for (int octant = 0; octant < 8; ++octant) descend({child_index(cell.index, octant), field}, level - 1, values);
   } else if (tree_->is_leaf(place)) {
     // What balance made is not known to hold surface.
     const FieldPtr field = known ? known->field : cell.field->narrow_to_surface(box);
-    if (field) visit(place, *field, known);
+    if (field) visit(place, *field, known, parent);
   }
 }
 
-void ChunkBuilder::visit(const BrickPlace& place, const Field& field, const KnownCell* known) {
+void ChunkBuilder::visit(const BrickPlace& place, const Field& field, const KnownCell* known,
+                         std::span<const double> parent) {
   task_.check();
   const auto& [index, level] = place;
   Brick brick(lattice_, index, level);
@@ -185,8 +187,8 @@ void ChunkBuilder::visit(const BrickPlace& place, const Field& field, const Know
   if (known && !known->values.empty()) {
     mixed = values_.use(known->values, brick);
   } else {
-    mixed = values_.sample(lattice_, field, brick);
-    chunk_.evaluations += BrickValues::count(brick);
+    mixed = values_.sample(lattice_, field, brick, parent);
+    chunk_.evaluations += values_.evaluations();
   }
   if (tree_ && level > 0) {
     const FinerCells finer = tree_->finer_around(place);

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "brick_tree.h"
@@ -64,8 +65,8 @@ class ChunkBuilder {
 
  private:
   void descend_uniformly(const IVec3& index, int level, const FieldPtr& narrowed);
-  void descend(const Cell& cell, int level);
-  void visit(const BrickPlace& place, const Field& field, const KnownCell* known);
+  void descend(const Cell& cell, int level, std::span<const double> parent);
+  void visit(const BrickPlace& place, const Field& field, const KnownCell* known, std::span<const double> parent);
   void mesh(const Brick& brick, const Field& field, bool transition);
   void find_vertices(const Brick& brick, bool transition);
   void emit_cells(const Brick& brick, bool transition);

@@ -260,28 +260,32 @@ class Refiner {
   Refiner(const Lattice& lattice, double tolerance, const ForcedSplits& forced)
       : lattice_(lattice), tolerance_(tolerance), forced_(forced) {}
 
-  void descend(const Cell& cell, int level, bool certain = false) {
+  /// @param parent   The values of the brick around the cell, or none.
+  /// @param certain  The cell is split without a look.
+  void descend(const Cell& cell, int level, std::span<const double> parent = {}, bool certain = false) {
     if (level == 0) {
       result_.leaves.push_back({cell.index, level});
       return;
     }
-    const FieldPtr field = cell.field->narrow(lattice_.box(cell.index, level));
+    KnownCell known{cell.field->narrow(lattice_.box(cell.index, level)), {}};
     unsigned certain_octants = 0;
     if (level <= lattice_.coarsest && !certain) {
-      if (!is_coarse(cell.index, level, *field)) {
+      const bool coarse = is_coarse(cell.index, level, *known.field, parent);
+      if (!forced_) known.values = values_.all();
+      if (!coarse) {
         result_.leaves.push_back({cell.index, level});
-        KnownCell known{field, {}};
-        if (!forced_) known.values = values_.all();
         result_.known.emplace_back(BrickPlace{cell.index, level}, std::move(known));
         return;
       }
       for (int octant = 0; octant < 8 && !forced_; ++octant)
         if (error_.octants()[octant] > kCertain * tolerance_) certain_octants |= 1u << octant;
     }
-    result_.known.emplace_back(BrickPlace{cell.index, level}, KnownCell{field, {}});
+    const FieldPtr field = known.field;
+    const std::span<const double> values = known.values;  // They stay in place while the list grows.
+    result_.known.emplace_back(BrickPlace{cell.index, level}, std::move(known));
     for (const Cell& child : children(lattice_, cell.index, level, field)) {
       const IVec3 at = child.index - 2 * cell.index;
-      descend(child, level - 1, !certain && (certain_octants >> (at.x + 2 * at.y + 4 * at.z) & 1) != 0);
+      descend(child, level - 1, values, !certain && (certain_octants >> (at.x + 2 * at.y + 4 * at.z) & 1) != 0);
     }
   }
 
@@ -291,11 +295,11 @@ class Refiner {
   }
 
  private:
-  bool is_coarse(const IVec3& index, int level, const Field& field) {
+  bool is_coarse(const IVec3& index, int level, const Field& field, std::span<const double> parent) {
     if (forced_) return forced_({index, level});
     Brick brick(lattice_, index, level);
-    values_.sample(lattice_, field, brick);
-    result_.evaluations += BrickValues::count(brick);
+    values_.sample(lattice_, field, brick, parent);
+    result_.evaluations += values_.evaluations();
     return error_.measure(tolerance_, lattice_, field, brick, values_) > tolerance_;
   }
 

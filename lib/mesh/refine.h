@@ -68,7 +68,7 @@ using ForcedSplits = std::function<bool(const BrickPlace&)>;
 /// What refinement computed in a cell, so that nobody does it again.
 struct KnownCell {
   FieldPtr field;              ///< Narrowed to it.
-  std::vector<double> values;  ///< BrickValues::all() of a leaf; empty: not known.
+  std::vector<double> values;  ///< BrickValues::all(); empty: not known.
 };
 
 struct Refinement {
