@@ -54,6 +54,12 @@ constexpr auto kBetween = [] {
 
 bool may_hold_surface(const Field& field, const Box& box) { return may_change_sign(field.bound(box)); }
 
+double clear_value(const Field& field, double distance) noexcept {
+  constexpr double kRoundedUp = 1.0 + 1e-6;
+  const Modulus modulus = field.modulus();
+  return kRoundedUp * std::min(field.lipschitz() * distance, modulus.slope * distance + modulus.slack);
+}
+
 Lattice Lattice::over(const PolygonizeOptions& options) {
   const Box& region = options.region;
   require(std::isfinite(options.resolution) && options.resolution > 0.0, "resolution", "a number of metres > 0",

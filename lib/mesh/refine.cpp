@@ -225,7 +225,7 @@ double BrickError::buried(const Lattice& lattice, const Field& field, const Bric
   start();
   const Vec3 first(brick.first());
   const double stride = 1 << brick.level;
-  const double reach = field.lipschitz() * 0.5 * stride * glm::length(lattice.step);
+  const double reach = clear_value(field, 0.5 * stride * glm::length(lattice.step));
   for (int k = 0; k < brick.cells.z; ++k)
     for (int j = 0; j < brick.cells.y; ++j)
       for (int i = 0; i < brick.cells.x; ++i) {

@@ -42,7 +42,7 @@ class BrickError {
   };
   [[nodiscard]] double hidden(double enough, const Lattice& lattice, const Field& field, const Brick& brick,
                               const BrickValues& values);
-  /// Surface in cells of one sign that are large enough to bury a block, as far as the Lipschitz constant allows any.
+  /// Surface in cells of one sign that are large enough to bury a block, as far as clear_value() allows any.
   [[nodiscard]] double buried(const Lattice& lattice, const Field& field, const Brick& brick,
                               const BrickValues& values);
   void reconstruct(const Brick& brick, const BrickValues& values);

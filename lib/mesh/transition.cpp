@@ -159,7 +159,7 @@ void TransitionCells::find_cells(const Lattice& lattice, const Field& field, con
   divided_.fill(0);
   const IVec3 n = brick.cells;
   // No point of a cell is farther from its nearest corner than this.
-  const double reach = field.lipschitz() * 0.5 * glm::length(lattice.step) * (1 << brick.level) * (1.0 + 1e-9);
+  const double reach = clear_value(field, 0.5 * glm::length(lattice.step) * (1 << brick.level));
   for (int k = 0; k < n.z; ++k)
     for (int j = 0; j < n.y; ++j) {
       const auto row = [&](int y, int z) { return finer.row(j + y, k + z); };
@@ -230,8 +230,8 @@ bool TransitionCells::sample(const Lattice& lattice, const Field& field, const B
 
   // Nodes that finer cells have, too; far from the surface a corner's sign is theirs.
   const Vec3 sides = lattice.step * double(1 << brick.level);
-  const double reach = field.lipschitz() * 0.5 * (1.0 + 1e-9);
-  const double to_middle = reach * std::max({sides.x, sides.y, sides.z}), to_centre = reach * glm::length(sides);
+  const double to_middle = clear_value(field, 0.5 * std::max({sides.x, sides.y, sides.z}));
+  const double to_centre = clear_value(field, 0.5 * glm::length(sides));
   for (const Cell& cell : cells_)
     for_each_shared(cell, [&](int half, const auto& corners) {
       if (known_[half] != Known::Nothing) return;
