@@ -191,8 +191,7 @@ bool BrickValues::sample_between(const Lattice& lattice, const Field& field, Bri
   }
   std::array<double, kNodesBetween> values;
   evaluations_ = values.size();
-  field.values({std::span(x_).first(evaluations_), std::span(y_).first(evaluations_), std::span(z_).first(evaluations_)},
-               values, {});
+  field.values(Points{x_, y_, z_}.subspan(0, values.size()), values, {});
   for (int n = 0; n < kNodesBetween; ++n) values_[kBetween[n]] = values[n];
   constexpr int kHalf = kBrickCells / 2;
   const IVec3 octant = kHalf * (brick.index & 1);

@@ -66,8 +66,8 @@ struct Cell {
 /// False when the bound says that no surface is in the box.
 [[nodiscard]] bool may_hold_surface(const Field& field, const Box& box);
 
-/// Where |f| is larger than this, nothing within `distance` is on the other side of the surface: by the Lipschitz constant
-/// or the modulus, whichever says more.
+/// Where |f| is larger than this, nothing within `distance` is on the other side of the surface: by the Lipschitz
+/// constant or the modulus, whichever says more.
 [[nodiscard]] double clear_value(const Field& field, double distance) noexcept;
 
 /// The root cell, or none when the bound says that no surface is in it.

@@ -180,7 +180,8 @@ double BrickError::deviation(const Lattice& lattice, const Field& field, const B
   for (const MixedCell& cell : cells) {
     double off = 0.0;
     for_each_triangle(cell, [&](const Vertex& a, const Vertex& b, const Vertex& c) {
-      for (const Vec3& w : weights) off = std::max(off, std::abs(f_[i++] - (w.x * a.value + w.y * b.value + w.z * c.value)));
+      for (const Vec3& w : weights)
+        off = std::max(off, std::abs(f_[i++] - (w.x * a.value + w.y * b.value + w.z * c.value)));
     });
     off /= slope(per_metre, values, cell.node);
     double& octant = octants_[octant_of(cell.node)];

@@ -22,8 +22,8 @@ class BrickError {
   /// the brick's.
   double measure(double enough, const Lattice& lattice, const Field& field, const Brick& brick,
                  const BrickValues& values);
-  /// The same for the triangles of each octant of the brick measured last, sampled once a triangle: or more than what
-  /// makes it certain that the octant is split. Not of a brick at level 1, where it stops as soon as it can.
+  /// The same for the triangles of each octant of the brick measured last, up to what makes it certain that the octant
+  /// is split. Not of a brick at level 1, where it stops as soon as it can.
   [[nodiscard]] const std::array<double, 8>& octants() const noexcept { return octants_; }
   /// Field values computed since construction.
   [[nodiscard]] std::size_t evaluations() const noexcept { return evaluations_; }
@@ -48,7 +48,7 @@ class BrickError {
   void reconstruct(const Brick& brick, const BrickValues& values);
   /// |∇f| of a cell, from its corners.
   [[nodiscard]] static double slope(const Vec3& per_metre, const BrickValues& values, int node);
-  /// What the triangles of these cells are off by; of each octant where that is more.
+  /// What the triangles of these cells are off by; octants_ take it in.
   [[nodiscard]] double deviation(const Lattice& lattice, const Field& field, const Brick& brick,
                                  const BrickValues& values, std::span<const MixedCell> cells, int subdivisions);
 
