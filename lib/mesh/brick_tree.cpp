@@ -18,9 +18,9 @@ const std::array<IVec3, 18>& face_and_edge_neighbours() {
 
 void FinerCells::mark(const IVec3& lo, const IVec3& hi) noexcept {
   any_ = true;
+  const unsigned cells = (1u << (hi.x + 1)) - (1u << (lo.x + 1));
   for (int z = lo.z; z < hi.z; ++z)
-    for (int y = lo.y; y < hi.y; ++y)
-      for (int x = lo.x; x < hi.x; ++x) finer_[place({x, y, z})] = 1;
+    for (int y = lo.y; y < hi.y; ++y) rows_[(z + 1) * kAcross + y + 1] |= static_cast<std::uint16_t>(cells);
 }
 
 std::uint64_t BrickTree::key(const BrickPlace& at) noexcept {

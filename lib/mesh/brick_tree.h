@@ -23,13 +23,19 @@ struct BrickPlace {
 class FinerCells {
  public:
   [[nodiscard]] bool any() const noexcept { return any_; }
-  /// @param cell  −1 to 8 an axis, in cells of the brick.
-  [[nodiscard]] bool at(const IVec3& cell) const noexcept { return finer_[place(cell)] != 0; }
+  /// The cells (−1, y, z) to (8, y, z), in cells of the brick, as bits 0 to 9; y and z are −1 to 8.
+  [[nodiscard]] unsigned row(int y, int z) const noexcept { return rows_[(z + 1) * kAcross + y + 1]; }
+  /// The 27 cells around and including `cell` of the brick, as bits (dx + 1) + 3 (dy + 1) + 9 (dz + 1).
+  [[nodiscard]] unsigned around(const IVec3& cell) const noexcept {
+    unsigned flags = 0;
+    for (int i = 0; i < 9; ++i) flags |= (row(cell.y + i % 3 - 1, cell.z + i / 3 - 1) >> cell.x & 7) << 3 * i;
+    return flags;
+  }
   void mark(const IVec3& lo, const IVec3& hi) noexcept;  ///< Cells lo to hi − 1.
 
  private:
-  static constexpr int place(const IVec3& c) noexcept { return (c.z + 1) * 100 + (c.y + 1) * 10 + c.x + 1; }
-  std::array<std::uint8_t, 1000> finer_{};
+  static constexpr int kAcross = kBrickCells + 2;
+  std::array<std::uint16_t, kAcross * kAcross> rows_{};
   bool any_ = false;
 };
 

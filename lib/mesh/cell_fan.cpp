@@ -1,6 +1,7 @@
 #include "cell_fan.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <tuple>
 
@@ -19,6 +20,9 @@ constexpr double kRounding = 1e-6;
 constexpr double kLeastHeight = 0.02;
 /// A crease is drawn where that takes the error to at most this share.
 constexpr double kGain = 0.5;
+
+/// A coned cell has at most 24 pyramids of up to four triangles, or 48 tetrahedra of two.
+constexpr std::size_t kMostTriangles = 96;
 
 using Triangle = std::array<std::uint32_t, 3>;
 
@@ -39,28 +43,30 @@ Vec3 area_normal(std::span<const std::uint32_t> loop, std::span<const Vec3f> pos
 }  // namespace
 
 std::vector<std::uint32_t> boundary_loop(std::span<const Triangle> triangles) {
-  std::vector<std::uint64_t> sides;  // Start and end in one number.
+  if (triangles.size() > kMostTriangles) return {};
+  std::array<std::uint64_t, 3 * kMostTriangles> sides;  // Start and end in one number.
+  auto end = sides.begin();
   const auto side = [](std::uint64_t a, std::uint64_t b) { return a << 32 | b; };
   for (const Triangle& t : triangles)
     for (int i = 0; i < 3; ++i) {
       const std::uint32_t a = t[i], b = t[(i + 1) % 3];
-      const auto opposite = std::find(sides.begin(), sides.end(), side(b, a));
-      if (opposite == sides.end()) {
-        sides.push_back(side(a, b));
-      } else {
-        *opposite = sides.back();
-        sides.pop_back();
-      }
+      const auto opposite = std::find(sides.begin(), end, side(b, a));
+      if (opposite == end)
+        *end++ = side(a, b);
+      else
+        *opposite = *--end;
     }
-  if (sides.size() < 3) return {};
+  const auto count = static_cast<std::size_t>(end - sides.begin());
+  if (count < 3) return {};
   std::vector<std::uint32_t> loop;
+  loop.reserve(count);
   const auto start = [](std::uint64_t s) { return static_cast<std::uint32_t>(s >> 32); };
   std::uint32_t at = start(sides.front());
-  for (std::size_t i = 0; i < sides.size(); ++i) {
+  while (loop.size() < count) {
     if (std::find(loop.begin(), loop.end(), at) != loop.end()) return {};
     loop.push_back(at);
     at = static_cast<std::uint32_t>(
-        *std::find_if(sides.begin(), sides.end(), [&](std::uint64_t s) { return start(s) == at; }));
+        *std::find_if(sides.begin(), end, [&](std::uint64_t s) { return start(s) == at; }));
   }
   return loop;
 }

@@ -11,7 +11,8 @@
 
 namespace outcrop::meshing {
 
-/// The one simple polygon that bounds oriented triangles, in their direction; empty when there is none, or several.
+/// The one simple polygon that bounds oriented triangles, in their direction; empty when there is none, or several, or
+/// more triangles than a cell has.
 [[nodiscard]] std::vector<std::uint32_t> boundary_loop(std::span<const std::array<std::uint32_t, 3>> triangles);
 
 /// Vertices inside cells whose surface is bounded by one polygon on the cell's faces.

@@ -42,8 +42,47 @@ struct SlotCases {
   }
 };
 
+constexpr int kFullTurn = 4;
+
 /// In place of a triangle that a fan replaced.
 constexpr Triangle kReplaced{0, 0, 0};
+
+/// Numbers the edges of the pieces of one coned cell, 0, 1, ..., as they come.
+class CellEdges {
+ public:
+  /// @param half  The cell's first half node.
+  void start(int half) {
+    for (std::size_t i = 0; i < size_; ++i) number_[slot(edges_[i])] = 0;
+    size_ = 0;
+    half_ = half;
+  }
+  [[nodiscard]] std::uint32_t number(const HalfEdge& edge) {
+    std::uint8_t& number = number_[slot(edge)];
+    if (number == 0) {
+      edges_[size_] = edge;
+      number = static_cast<std::uint8_t>(++size_);
+    }
+    return number - 1u;
+  }
+  [[nodiscard]] const HalfEdge& edge(std::uint32_t number) const { return edges_[number]; }
+
+ private:
+  /// The cell's half nodes are 0 to 2 an axis: 27, and their numbers.
+  static constexpr int kLast = half_number(IVec3(2));
+  static constexpr auto kLocal = [] {
+    std::array<std::uint8_t, kLast + 1> local{};
+    for (int i = 0; i < 27; ++i) local[half_number(IVec3(i % 3, i / 3 % 3, i / 9))] = static_cast<std::uint8_t>(i);
+    return local;
+  }();
+  [[nodiscard]] int slot(const HalfEdge& edge) const {
+    return kLocal[edge[0] - half_] * 27 + kLocal[edge[1] - half_];
+  }
+
+  int half_ = 0;
+  std::size_t size_ = 0;
+  std::array<HalfEdge, 80> edges_;  ///< Half nodes on the cell's faces are joined by 48 edges, and to its centre by 26.
+  std::array<std::uint8_t, 27 * 27> number_{};
+};
 
 /// Twice the middle's coordinates and the direction: no two edges of a mesh share both, whatever their lengths.
 constexpr int kKeyBits = 19, kDirectionBits = 5;
@@ -70,7 +109,7 @@ IVec3 twice_middle(std::uint64_t key) {
 
 int quarters_around(const Lattice& lattice, std::uint64_t key) noexcept {
   const IVec3 middle = twice_middle(key);
-  int quarters = 4;
+  int quarters = kFullTurn;
   for (int axis = 0; axis < 3; ++axis)
     if (middle[axis] == 0 || middle[axis] == 2 * lattice.cells[axis]) quarters /= 2;
   return quarters;
@@ -104,7 +143,7 @@ Chunk ChunkBuilder::build(const Cell& cell, int level) {
   shared_number_.clear();
   creases_.clear();
   if (tree_)
-    descend(cell, level);
+    descend(cell, level, {});
   else
     descend_uniformly(cell.index, level, cell.field->narrow(lattice_.box(cell.index, level)));
   join_creases(lattice_, creases_, chunk_.positions, chunk_.normals, chunk_.triangles);
@@ -115,7 +154,7 @@ Chunk ChunkBuilder::build(const Cell& cell, int level) {
 }
 
 void ChunkBuilder::descend_uniformly(const IVec3& index, int level, const FieldPtr& narrowed) {
-  if (level == 0) return visit({index, level}, *narrowed, nullptr);
+  if (level == 0) return visit({index, level}, *narrowed, nullptr, {});
   for (int octant = 0; octant < 8; ++octant) {
     const IVec3 child = child_index(index, octant);
     if (!lattice_.holds(child, level - 1)) continue;
@@ -124,21 +163,23 @@ void ChunkBuilder::descend_uniformly(const IVec3& index, int level, const FieldP
   }
 }
 
-void ChunkBuilder::descend(const Cell& cell, int level) {
+void ChunkBuilder::descend(const Cell& cell, int level, std::span<const double> parent) {
   const BrickPlace place{cell.index, level};
   const KnownCell* known = known_->find(BrickTree::key(place));
   const Box box = lattice_.box(cell.index, level);
   if (tree_->is_split(place)) {
     const FieldPtr field = known ? known->field : cell.field->narrow(box);
-    for (int octant = 0; octant < 8; ++octant) descend({child_index(cell.index, octant), field}, level - 1);
+    const std::span<const double> values = known ? std::span(known->values) : std::span<const double>();
+    for (int octant = 0; octant < 8; ++octant) descend({child_index(cell.index, octant), field}, level - 1, values);
   } else if (tree_->is_leaf(place)) {
     // What balance made is not known to hold surface.
     const FieldPtr field = known ? known->field : cell.field->narrow_to_surface(box);
-    if (field) visit(place, *field, known);
+    if (field) visit(place, *field, known, parent);
   }
 }
 
-void ChunkBuilder::visit(const BrickPlace& place, const Field& field, const KnownCell* known) {
+void ChunkBuilder::visit(const BrickPlace& place, const Field& field, const KnownCell* known,
+                         std::span<const double> parent) {
   task_.check();
   const auto& [index, level] = place;
   Brick brick(lattice_, index, level);
@@ -146,8 +187,8 @@ void ChunkBuilder::visit(const BrickPlace& place, const Field& field, const Know
   if (known && !known->values.empty()) {
     mixed = values_.use(known->values, brick);
   } else {
-    mixed = values_.sample(lattice_, field, brick);
-    chunk_.evaluations += BrickValues::count(brick);
+    mixed = values_.sample(lattice_, field, brick, parent);
+    chunk_.evaluations += values_.evaluations();
   }
   if (tree_ && level > 0) {
     const FinerCells finer = tree_->finer_around(place);
@@ -213,6 +254,8 @@ std::uint32_t ChunkBuilder::shared_vertex_on(const IVec3& from, const IVec3& alo
   }
   BorderVertex& shared = shared_[number - 1];
   shared.quarters += planes == 1 ? 2 : 1;
+  // Nobody will ask for it again: the table stays as small as the front between bricks, and in the cache.
+  if (shared.quarters == kFullTurn) shared_number_.erase(key);
   return shared.vertex;
 }
 
@@ -243,29 +286,23 @@ void ChunkBuilder::emit_cells(const Brick& brick, bool transition) {
 void ChunkBuilder::gather_coned(const Brick& brick) {
   half_vertices_.clear();
   const int edge = 1 << brick.level;
-  std::vector<std::uint32_t> edges;
-  std::vector<Triangle> triangles;
-  for (std::size_t cell = 0; cell < transition_.mixed().size(); ++cell) {
+  CellEdges edges;
+  for (std::size_t cell = 0; cell < transition_.size(); ++cell) {
     ++chunk_.cells;
-    edges.clear();
-    triangles.clear();
-    const auto number = [&](const HalfEdge& e) {
-      const std::uint32_t key = static_cast<std::uint32_t>(e[0]) << 16 | static_cast<std::uint32_t>(e[1]);
-      const auto found = static_cast<std::uint32_t>(std::find(edges.begin(), edges.end(), key) - edges.begin());
-      if (found == edges.size()) edges.push_back(key);
-      return found;
-    };
+    const IVec3& place = transition_.place(cell);
+    coned_triangles_.clear();
+    edges.start(half_number(2 * place));
     transition_.for_each_triangle(cell, [&](const HalfEdge& a, const HalfEdge& b, const HalfEdge& c) {
-      const std::uint32_t u = number(a), v = number(b), w = number(c);
-      triangles.push_back({u, v, w});
+      const std::uint32_t u = edges.number(a), v = edges.number(b), w = edges.number(c);
+      coned_triangles_.push_back({u, v, w});
     });
-    std::vector<std::uint32_t> loop = boundary_loop(triangles);
+    std::vector<std::uint32_t> loop = boundary_loop(coned_triangles_);
     if (loop.empty()) {
       emit_coned(brick, cell);
       continue;
     }
-    for (std::uint32_t& v : loop) v = half_vertex(brick, {int(edges[v] >> 16), int(edges[v] & 0xFFFF)});
-    fans_.add(brick.first() + edge * transition_.mixed()[cell], edge, loop, {}, options_.tolerance);
+    for (std::uint32_t& v : loop) v = half_vertex(brick, edges.edge(v));
+    fans_.add(brick.first() + edge * place, edge, loop, {}, options_.tolerance);
     fan_source_.push_back(cell);
   }
 }
@@ -356,15 +393,19 @@ void ChunkBuilder::fill_missing_normals() {
   const auto& normals = chunk_.normals;
   if (std::find(normals.begin(), normals.end(), Vec3f(0.0f)) == normals.end()) return;
   // The mean direction of the vertex's triangles in this chunk, weighted by area.
-  std::vector<Vec3> sums(normals.size(), Vec3(0.0));
+  const auto is_missing = [&](std::uint32_t v) { return normals[v] == Vec3f(0.0f); };
+  FlatMap<Vec3> sums;  // By vertex and 1.
   for (const Triangle& t : chunk_.triangles) {
+    if (!std::any_of(t.begin(), t.end(), is_missing)) continue;
     const Vec3 a(chunk_.positions[t[0]]), b(chunk_.positions[t[1]]), c(chunk_.positions[t[2]]);
-    for (const std::uint32_t v : t) sums[v] += glm::cross(b - a, c - a);
+    for (const std::uint32_t v : t)
+      if (is_missing(v)) sums[v + std::uint64_t{1}] += glm::cross(b - a, c - a);
   }
-  for (std::size_t v = 0; v < sums.size(); ++v) {
-    if (chunk_.normals[v] != Vec3f(0.0f)) continue;
-    const double length = glm::length(sums[v]);
-    chunk_.normals[v] = length > 0.0 ? Vec3f(sums[v] / length) : Vec3f(0, 0, 1);
+  for (std::uint32_t v = 0; v < normals.size(); ++v) {
+    if (!is_missing(v)) continue;
+    const Vec3* const sum = sums.find(v + std::uint64_t{1});
+    const double length = sum ? glm::length(*sum) : 0.0;
+    chunk_.normals[v] = length > 0.0 ? Vec3f(*sum / length) : Vec3f(0, 0, 1);
   }
 }
 

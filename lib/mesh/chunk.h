@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "brick_tree.h"
@@ -64,8 +65,8 @@ class ChunkBuilder {
 
  private:
   void descend_uniformly(const IVec3& index, int level, const FieldPtr& narrowed);
-  void descend(const Cell& cell, int level);
-  void visit(const BrickPlace& place, const Field& field, const KnownCell* known);
+  void descend(const Cell& cell, int level, std::span<const double> parent);
+  void visit(const BrickPlace& place, const Field& field, const KnownCell* known, std::span<const double> parent);
   void mesh(const Brick& brick, const Field& field, bool transition);
   void find_vertices(const Brick& brick, bool transition);
   void emit_cells(const Brick& brick, bool transition);
@@ -91,6 +92,7 @@ class ChunkBuilder {
   RootSolver solver_;
   CellFans fans_;
   std::vector<Apex> creases_;
+  std::vector<Triangle> coned_triangles_;  ///< Of one cell, of its edges.
   std::vector<std::size_t> fan_source_;   ///< Of each fan: the first triangle that it replaces, or the coned cell.
   std::vector<BorderVertex> shared_;      ///< Vertices on faces of bricks, in order.
   FlatMap<std::uint32_t> shared_number_;  ///< By edge: the place in `shared_`, and 1.

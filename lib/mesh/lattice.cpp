@@ -41,9 +41,24 @@ void mark_negative(const double* __restrict values, std::uint8_t* __restrict fla
   for (int n = 0; n < kNodes; ++n) flags[n] = values[n] < 0.0 ? 1 : 0;
 }
 
+/// The nodes that the brick twice as large around a brick does not have.
+constexpr int kNodesBetween = kNodes - (kBrickCells / 2 + 1) * (kBrickCells / 2 + 1) * (kBrickCells / 2 + 1);
+constexpr auto kBetween = [] {
+  std::array<std::uint16_t, kNodesBetween> nodes{};
+  for (int node = 0, n = 0; node < kNodes; ++node)
+    if (node % 9 % 2 + node / 9 % 9 % 2 + node / 81 % 2 > 0) nodes[n++] = static_cast<std::uint16_t>(node);
+  return nodes;
+}();
+
 }  // namespace
 
 bool may_hold_surface(const Field& field, const Box& box) { return may_change_sign(field.bound(box)); }
+
+double clear_value(const Field& field, double distance) noexcept {
+  constexpr double kRoundedUp = 1.0 + 1e-6;
+  const Modulus modulus = field.modulus();
+  return kRoundedUp * std::min(field.lipschitz() * distance, modulus.slope * distance + modulus.slack);
+}
 
 Lattice Lattice::over(const PolygonizeOptions& options) {
   const Box& region = options.region;
@@ -133,7 +148,8 @@ Brick::Brick(const Lattice& lattice, const IVec3& brick_index, int brick_level)
 
 BrickValues::BrickValues() : x_(kNodes), y_(kNodes), z_(kNodes), values_(kNodes) {}
 
-bool BrickValues::sample(const Lattice& lattice, const Field& field, Brick& brick) {
+bool BrickValues::sample(const Lattice& lattice, const Field& field, Brick& brick, std::span<const double> parent) {
+  if (!parent.empty() && brick.cells == IVec3(kBrickCells)) return sample_between(lattice, field, brick, parent);
   const IVec3 first = brick.first();
   const int stride = 1 << brick.level;
   std::array<double, kBrickNodes> row_x;
@@ -149,6 +165,7 @@ bool BrickValues::sample(const Lattice& lattice, const Field& field, Brick& bric
     }
   }
   const std::span<double> values = std::span(values_).first(n);
+  evaluations_ = n;
   field.values({std::span(x_).first(n), std::span(y_).first(n), std::span(z_).first(n)}, values, {});
 
   // Spread the rows of a brick cut short to their places, last row first so that none is overwritten unread.
@@ -157,6 +174,32 @@ bool BrickValues::sample(const Lattice& lattice, const Field& field, Brick& bric
       const double* from = &values_[(k * (brick.cells.y + 1) + j) * width];
       std::copy_backward(from, from + width, &values_[(k * 9 + j) * 9] + width);
     }
+  return classify(brick);
+}
+
+bool BrickValues::sample_between(const Lattice& lattice, const Field& field, Brick& brick,
+                                 std::span<const double> parent) {
+  const IVec3 first = brick.first();
+  std::array<std::array<double, kBrickNodes>, 3> at;
+  for (int axis = 0; axis < 3; ++axis)
+    for (int i = 0; i < kBrickNodes; ++i) at[axis][i] = lattice.coordinate(axis, first[axis] + (i << brick.level));
+  for (int n = 0; n < kNodesBetween; ++n) {
+    const IVec3 place = node_place(kBetween[n]);
+    x_[n] = at[0][place.x];
+    y_[n] = at[1][place.y];
+    z_[n] = at[2][place.z];
+  }
+  std::array<double, kNodesBetween> values;
+  evaluations_ = values.size();
+  field.values(Points{x_, y_, z_}.subspan(0, values.size()), values, {});
+  for (int n = 0; n < kNodesBetween; ++n) values_[kBetween[n]] = values[n];
+  constexpr int kHalf = kBrickCells / 2;
+  const IVec3 octant = kHalf * (brick.index & 1);
+  const double* const known = &parent[octant.x + octant.y * kStride[1] + octant.z * kStride[2]];
+  for (int k = 0; k <= kHalf; ++k)
+    for (int j = 0; j <= kHalf; ++j)
+      for (int i = 0; i <= kHalf; ++i)
+        values_[2 * (i + j * kStride[1] + k * kStride[2])] = known[i + j * kStride[1] + k * kStride[2]];
   return classify(brick);
 }
 

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "node_set.h"
@@ -64,6 +65,10 @@ struct Cell {
 
 /// False when the bound says that no surface is in the box.
 [[nodiscard]] bool may_hold_surface(const Field& field, const Box& box);
+
+/// Where |f| is larger than this, nothing within `distance` is on the other side of the surface: by the Lipschitz
+/// constant or the modulus, whichever says more.
+[[nodiscard]] double clear_value(const Field& field, double distance) noexcept;
 
 /// The root cell, or none when the bound says that no surface is in it.
 [[nodiscard]] std::vector<Cell> root_cells(const Lattice& lattice, const Field& field);
@@ -128,20 +133,23 @@ struct Brick {
 class BrickValues {
  public:
   BrickValues();
+  /// @param parent  The values of the brick twice as large around this one, if they are known: nodes that both have,
+  ///                one in eight, are not computed again.
   /// @return true when the brick holds rock and air.
-  bool sample(const Lattice& lattice, const Field& field, Brick& brick);
+  bool sample(const Lattice& lattice, const Field& field, Brick& brick, std::span<const double> parent = {});
   /// The same with values that another took from the same brick.
   bool use(const std::vector<double>& values, Brick& brick);
   [[nodiscard]] const std::vector<double>& all() const noexcept { return values_; }
   /// At node i + 9 j + 81 k.
   [[nodiscard]] double at(int node) const noexcept { return values_[node]; }
-  [[nodiscard]] static std::size_t count(const Brick& brick) noexcept {
-    return static_cast<std::size_t>((brick.cells.x + 1) * (brick.cells.y + 1) * (brick.cells.z + 1));
-  }
+  /// Values that were computed for the brick sampled last.
+  [[nodiscard]] std::size_t evaluations() const noexcept { return evaluations_; }
 
  private:
+  bool sample_between(const Lattice& lattice, const Field& field, Brick& brick, std::span<const double> parent);
   bool classify(Brick& brick) const;
 
+  std::size_t evaluations_ = 0;
   std::vector<double> x_, y_, z_, values_;
 };
 

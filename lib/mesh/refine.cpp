@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "outcrop/core/simd.h"
 #include "outcrop/mesh/marching_cubes.h"
 
 namespace outcrop::meshing {
@@ -16,7 +17,30 @@ constexpr double kLeastSlope = 0.1;
 /// With half the cells the error goes down to a half where there is a crease, to a quarter where the surface is smooth.
 /// Where it is this many tolerances, half the cells cannot do.
 constexpr double kCertain = 6.0;
+/// One cell in so many is enough to tell most bricks that are to be split.
+constexpr std::size_t kFirstLook = 8;
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
+
+/// The octant of its brick in which a cell lies.
+std::size_t octant_of(int node) {
+  const IVec3 half = node_place(node) / (kBrickCells / 2);
+  return static_cast<std::size_t>(half.x + 2 * half.y + 4 * half.z);
+}
+
+/// flags[n] = 1 where values n and n + step have one sign, and what is on either side of them leads past 0 within a
+/// step. Where the line or the brick ends there may be flags that mean nothing.
+OUTCROP_SIMD_CLONES
+void mark_leading(const double* __restrict values, int step, std::uint8_t* __restrict flags) {
+  const auto leads = [](double from, double to) { return std::abs(to - from) > std::abs(to); };
+  const auto same = [](double a, double b) { return (a < 0.0) == (b < 0.0); };
+  for (int n = 0; n < step; ++n)
+    flags[n] = same(values[n], values[n + step]) & leads(values[n + 2 * step], values[n + step]);
+  for (int n = step; n < kNodes - 2 * step; ++n)
+    flags[n] = same(values[n], values[n + step]) &
+               (leads(values[n - step], values[n]) | leads(values[n + 2 * step], values[n + step]));
+  for (int n = kNodes - 2 * step; n < kNodes - step; ++n)
+    flags[n] = same(values[n], values[n + step]) & leads(values[n - step], values[n]);
+}
 
 }  // namespace
 
@@ -33,31 +57,31 @@ double BrickError::hidden(double enough, const Lattice& lattice, const Field& fi
   for (int axis = 0; axis < 3; ++axis) {
     const int step = kStride[axis];
     const double edge = lattice.step[axis] * stride;
-    for (int k = 0; k <= n.z - (axis == 2); ++k)
-      for (int j = 0; j <= n.y - (axis == 1); ++j)
-        for (int i = 0; i <= n.x - (axis == 0); ++i) {
-          const int node = i + 9 * j + 81 * k, along = axis == 0 ? i : axis == 1 ? j : k;
-          const double b = values.at(node), c = values.at(node + step);
-          if ((b < 0.0) != (c < 0.0)) continue;
-          // Straight on from both sides, the values meet where a crease between the nodes would be.
-          const double left = along > 0 ? b - values.at(node - step) : 0.0;
-          const double right = along + 2 <= n[axis] ? values.at(node + 2 * step) - c : 0.0;
-          const double towards = b < 0.0 ? 1.0 : -1.0;  // The way to 0.
-          if (towards * left <= 0.0 && towards * right >= 0.0) continue;
-          double t = 0.5;
-          if (along > 0 && along + 2 <= n[axis] && std::abs(left - right) > 0.0)
-            t = std::clamp((c - b - right) / (left - right), 0.0, 1.0);
-          const double peak = std::max(towards * (b + t * left), towards * (c - (1.0 - t) * right));
-          const double slope = std::max(std::abs(left), std::abs(right)) / edge;
-          if (peak <= (enough < kUnlimited ? enough * slope : 0.0)) continue;
-          Vec3 at(i, j, k);
-          at[axis] += t;
-          const Vec3 p = lattice.place(first + stride * at);
-          x_.push_back(p.x);
-          y_.push_back(p.y);
-          z_.push_back(p.z);
-          slopes_.push_back(towards * slope);
-        }
+    std::array<std::uint8_t, NodeSet::kWords * 64> leading{};
+    mark_leading(values.all().data(), step, leading.data());
+    (NodeSet::of(leading.data()) & brick.shape.edges[axis]).for_each([&](int node) {
+      const IVec3 place = node_place(node);
+      const int along = place[axis];
+      const double b = values.at(node), c = values.at(node + step);
+      // Straight on from both sides, the values meet where a crease between the nodes would be.
+      const double left = along > 0 ? b - values.at(node - step) : 0.0;
+      const double right = along + 2 <= n[axis] ? values.at(node + 2 * step) - c : 0.0;
+      const double towards = b < 0.0 ? 1.0 : -1.0;  // The way to 0.
+      if (towards * left <= 0.0 && towards * right >= 0.0) return;
+      double t = 0.5;
+      if (along > 0 && along + 2 <= n[axis] && std::abs(left - right) > 0.0)
+        t = std::clamp((c - b - right) / (left - right), 0.0, 1.0);
+      const double peak = std::max(towards * (b + t * left), towards * (c - (1.0 - t) * right));
+      const double slope = std::max(std::abs(left), std::abs(right)) / edge;
+      if (peak <= (enough < kUnlimited ? enough * slope : 0.0)) return;
+      Vec3 at(place);
+      at[axis] += t;
+      const Vec3 p = lattice.place(first + stride * at);
+      x_.push_back(p.x);
+      y_.push_back(p.y);
+      z_.push_back(p.z);
+      slopes_.push_back(towards * slope);
+    });
   }
   f_.resize(x_.size());
   field.values({x_, y_, z_}, f_, {});
@@ -67,100 +91,133 @@ double BrickError::hidden(double enough, const Lattice& lattice, const Field& fi
   return most;
 }
 
-void BrickError::reconstruct(const Lattice& lattice, const Brick& brick, const BrickValues& values) {
+void BrickError::reconstruct(const Brick& brick, const BrickValues& values) {
   vertices_.clear();
-  faces_.clear();
+  triangles_.clear();
+  cells_.clear();
   const Vec3 first(brick.first());
   const double stride = 1 << brick.level;
-  brick.for_each_row([&](int axis, int j, int k, unsigned crossing) {
-    for (unsigned bits = crossing & ((1u << (brick.cells.x + (axis != 0))) - 1); bits != 0; bits &= bits - 1) {
-      const int i = std::countr_zero(bits), node = i + 9 * j + 81 * k;
+  for (int axis = 0; axis < 3; ++axis)
+    brick.crossings(axis).for_each([&](int node) {
       const double a = values.at(node), b = values.at(node + kStride[axis]);
-      Vec3 at(i, j, k);
+      Vec3 at(node_place(node));
       at[axis] += a / (a - b);
       vertex_of_edge_[axis * kNodes + node] = static_cast<int>(vertices_.size());
       vertices_.push_back({first + stride * at});
-    }
-  });
+    });
+  const CaseTable& cases = CaseTable::cube();
   brick.for_each_mixed_cell([&](int node, int cube_case) {
-    Vec3 slope(0.0);
-    double steepest = 0.0;
-    for (int corner = 0; corner < 8; ++corner) {
-      const int at = node + (corner & 1) + 9 * (corner >> 1 & 1) + 81 * (corner >> 2);
-      for (int axis = 0; axis < 3; ++axis) {
-        if (corner >> axis & 1) continue;
-        const double difference = (values.at(at + kStride[axis]) - values.at(at)) / (lattice.step[axis] * stride);
-        slope[axis] += 0.25 * difference;
-        steepest = std::max(steepest, std::abs(difference));
-      }
-    }
-    constexpr int kHalf = kBrickCells / 2;
-    const int octant = (node % 9 >= kHalf) + 2 * (node / 9 % 9 >= kHalf) + 4 * (node / 81 >= kHalf);
-    const double length = std::max(glm::length(slope), kLeastSlope * steepest);
-    for (const CellTriangle& t : CaseTable::cube()[cube_case]) {
-      Face& face = faces_.emplace_back();
-      face.slope = length;
-      face.octant = octant;
+    MixedCell& cell = cells_.emplace_back(MixedCell{node, static_cast<int>(triangles_.size()), 0});
+    for (const CellTriangle& t : cases[cube_case]) {
+      std::array<int, 3>& triangle = triangles_.emplace_back();
       for (int corner = 0; corner < 3; ++corner) {
         const CubeEdge e = cube_edge(t[corner]);
-        face.vertex[corner] = vertex_of_edge_[e.axis * kNodes + node + e.from.x + 9 * e.from.y + 81 * e.from.z];
+        triangle[corner] = vertex_of_edge_[e.axis * kNodes + node + e.from.x + 9 * e.from.y + 81 * e.from.z];
       }
     }
+    cell.last = static_cast<int>(triangles_.size());
   });
 }
 
-double BrickError::deviation(const Lattice& lattice, const Field& field, int subdivisions) {
-  octants_.fill(0.0);
-  if (faces_.empty()) return 0.0;
+double BrickError::slope(const Vec3& per_metre, const BrickValues& values, int node) {
+  Vec3 mean(0.0);
+  double steepest = 0.0;
+  for (int axis = 0; axis < 3; ++axis)
+    for (int corner = 0; corner < 8; ++corner) {
+      if (corner >> axis & 1) continue;
+      const int at = node + (corner & 1) + 9 * (corner >> 1 & 1) + 81 * (corner >> 2);
+      const double difference = (values.at(at + kStride[axis]) - values.at(at)) * per_metre[axis];
+      mean[axis] += 0.25 * difference;
+      steepest = std::max(steepest, std::abs(difference));
+    }
+  return std::max(glm::length(mean), kLeastSlope * steepest);
+}
+
+double BrickError::deviation(const Lattice& lattice, const Field& field, const Brick& brick, const BrickValues& values,
+                             std::span<const MixedCell> cells, int subdivisions) {
+  if (cells.empty()) return 0.0;
   // The middles of the small triangles that are not turned around.
-  std::vector<Vec3> weights;
+  std::array<Vec3, kMostSubdivisions * (kMostSubdivisions + 1) / 2> all_weights;
+  std::size_t count = 0;
   for (int u = 0; u < subdivisions; ++u)
     for (int v = 0; u + v < subdivisions; ++v) {
       const double a = (u + 1.0 / 3.0) / subdivisions, b = (v + 1.0 / 3.0) / subdivisions;
-      weights.emplace_back(a, b, 1.0 - a - b);
+      all_weights[count++] = {a, b, 1.0 - a - b};
     }
+  const std::span<const Vec3> weights = std::span(all_weights).first(count);
+  start();
   const auto add = [&](const Vec3& index) {
     const Vec3 p = lattice.place(index);
     x_.push_back(p.x);
     y_.push_back(p.y);
     z_.push_back(p.z);
   };
-  x_.clear();
-  y_.clear();
-  z_.clear();
+  const auto for_each_triangle = [&](const MixedCell& cell, const auto& visit) {
+    for (int t = cell.first; t < cell.last; ++t)
+      visit(vertices_[triangles_[t][0]], vertices_[triangles_[t][1]], vertices_[triangles_[t][2]]);
+  };
   // The mesh's vertices will be roots: what its triangles are off by is what is left when these values are subtracted.
-  const bool first = subdivisions == 1;
-  const std::size_t skip = first ? vertices_.size() : 0;
-  if (first)
-    for (const Vertex& v : vertices_) add(v.index);
-  for (const Face& face : faces_)
-    for (const Vec3& w : weights)
-      add(w.x * vertices_[face.vertex[0]].index + w.y * vertices_[face.vertex[1]].index +
-          w.z * vertices_[face.vertex[2]].index);
+  asked_.clear();
+  for (const MixedCell& cell : cells)
+    for (int t = cell.first; t < cell.last; ++t)
+      for (const int v : triangles_[t]) {
+        if (vertices_[v].known) continue;
+        vertices_[v].known = true;
+        asked_.push_back(v);
+        add(vertices_[v].index);
+      }
+  for (const MixedCell& cell : cells)
+    for_each_triangle(cell, [&](const Vertex& a, const Vertex& b, const Vertex& c) {
+      for (const Vec3& w : weights) add(w.x * a.index + w.y * b.index + w.z * c.index);
+    });
   f_.resize(x_.size());
   field.values({x_, y_, z_}, f_, {});
   evaluations_ += f_.size();
-  for (std::size_t v = 0; v < skip; ++v) vertices_[v].value = f_[v];
-  std::size_t i = skip;
-  for (const Face& face : faces_)
-    for (const Vec3& w : weights) {
-      const double linear = w.x * vertices_[face.vertex[0]].value + w.y * vertices_[face.vertex[1]].value +
-                            w.z * vertices_[face.vertex[2]].value;
-      octants_[face.octant] = std::max(octants_[face.octant], std::abs(f_[i++] - linear) / face.slope);
-    }
-  return *std::max_element(octants_.begin(), octants_.end());
+  std::size_t i = 0;
+  for (const int v : asked_) vertices_[v].value = f_[i++];
+  const Vec3 per_metre = 1.0 / (lattice.step * double(1 << brick.level));
+  double most = 0.0;
+  for (const MixedCell& cell : cells) {
+    double off = 0.0;
+    for_each_triangle(cell, [&](const Vertex& a, const Vertex& b, const Vertex& c) {
+      for (const Vec3& w : weights)
+        off = std::max(off, std::abs(f_[i++] - (w.x * a.value + w.y * b.value + w.z * c.value)));
+    });
+    off /= slope(per_metre, values, cell.node);
+    double& octant = octants_[octant_of(cell.node)];
+    octant = std::max(octant, off);
+    most = std::max(most, off);
+  }
+  return most;
 }
 
 double BrickError::measure(double enough, const Lattice& lattice, const Field& field, const Brick& brick,
                            const BrickValues& values) {
-  reconstruct(lattice, brick, values);
-  double error = deviation(lattice, field, 1);
-  if (error > enough) return error;
+  reconstruct(brick, values);
+  octants_.fill(0.0);
+  double error = 0.0;
+  std::size_t seen = 0;
+  const auto look = [&](std::size_t last, int subdivisions) {
+    const auto cells = std::span(cells_).subspan(seen, last - seen);
+    error = std::max(error, deviation(lattice, field, brick, values, cells, subdivisions));
+    return error > enough;
+  };
+  for (; seen * kFirstLook < cells_.size(); ++seen) std::swap(cells_[seen], cells_[seen * kFirstLook]);
+  const std::size_t some = std::exchange(seen, 0);
+  if (look(some, 1) && brick.level == 1) return error;
+  seen = some;
+  if (error > kCertain * enough) {
+    // It is to be split, and so are octants that are off by so much: they need no second look.
+    cells_.erase(cells_.begin(), cells_.begin() + static_cast<std::ptrdiff_t>(std::exchange(seen, 0)));
+    std::erase_if(cells_, [&](const MixedCell& cell) { return octants_[octant_of(cell.node)] > kCertain * enough; });
+  }
+  if (look(cells_.size(), 1)) return error;
   error = std::max(error, hidden(enough, lattice, field, brick, values));
   if (error > enough) return error;
+  seen = 0;
   const int subdivisions = std::min(1 << (brick.level - 1), kMostSubdivisions);
-  if (subdivisions > 1) error = std::max(error, deviation(lattice, field, subdivisions));
-  return error > enough ? error : std::max(error, buried(lattice, field, brick, values));
+  if (subdivisions > 1 && look(cells_.size(), subdivisions)) return error;
+  return std::max(error, buried(lattice, field, brick, values));
 }
 
 double BrickError::buried(const Lattice& lattice, const Field& field, const Brick& brick, const BrickValues& values) {
@@ -169,7 +226,7 @@ double BrickError::buried(const Lattice& lattice, const Field& field, const Bric
   start();
   const Vec3 first(brick.first());
   const double stride = 1 << brick.level;
-  const double reach = field.lipschitz() * 0.5 * stride * glm::length(lattice.step);
+  const double reach = clear_value(field, 0.5 * stride * glm::length(lattice.step));
   for (int k = 0; k < brick.cells.z; ++k)
     for (int j = 0; j < brick.cells.y; ++j)
       for (int i = 0; i < brick.cells.x; ++i) {
@@ -204,28 +261,32 @@ class Refiner {
   Refiner(const Lattice& lattice, double tolerance, const ForcedSplits& forced)
       : lattice_(lattice), tolerance_(tolerance), forced_(forced) {}
 
-  void descend(const Cell& cell, int level, bool certain = false) {
+  /// @param parent   The values of the brick around the cell, or none.
+  /// @param certain  The cell is split without a look.
+  void descend(const Cell& cell, int level, std::span<const double> parent = {}, bool certain = false) {
     if (level == 0) {
       result_.leaves.push_back({cell.index, level});
       return;
     }
-    const FieldPtr field = cell.field->narrow(lattice_.box(cell.index, level));
+    KnownCell known{cell.field->narrow(lattice_.box(cell.index, level)), {}};
     unsigned certain_octants = 0;
     if (level <= lattice_.coarsest && !certain) {
-      if (!is_coarse(cell.index, level, *field)) {
+      const bool coarse = is_coarse(cell.index, level, *known.field, parent);
+      if (!forced_) known.values = values_.all();
+      if (!coarse) {
         result_.leaves.push_back({cell.index, level});
-        KnownCell known{field, {}};
-        if (!forced_) known.values = values_.all();
         result_.known.emplace_back(BrickPlace{cell.index, level}, std::move(known));
         return;
       }
       for (int octant = 0; octant < 8 && !forced_; ++octant)
         if (error_.octants()[octant] > kCertain * tolerance_) certain_octants |= 1u << octant;
     }
-    result_.known.emplace_back(BrickPlace{cell.index, level}, KnownCell{field, {}});
+    const FieldPtr field = known.field;
+    const std::span<const double> values = known.values;  // They stay in place while the list grows.
+    result_.known.emplace_back(BrickPlace{cell.index, level}, std::move(known));
     for (const Cell& child : children(lattice_, cell.index, level, field)) {
       const IVec3 at = child.index - 2 * cell.index;
-      descend(child, level - 1, !certain && (certain_octants >> (at.x + 2 * at.y + 4 * at.z) & 1) != 0);
+      descend(child, level - 1, values, !certain && (certain_octants >> (at.x + 2 * at.y + 4 * at.z) & 1) != 0);
     }
   }
 
@@ -235,11 +296,11 @@ class Refiner {
   }
 
  private:
-  bool is_coarse(const IVec3& index, int level, const Field& field) {
+  bool is_coarse(const IVec3& index, int level, const Field& field, std::span<const double> parent) {
     if (forced_) return forced_({index, level});
     Brick brick(lattice_, index, level);
-    values_.sample(lattice_, field, brick);
-    result_.evaluations += BrickValues::count(brick);
+    values_.sample(lattice_, field, brick, parent);
+    result_.evaluations += values_.evaluations();
     return error_.measure(tolerance_, lattice_, field, brick, values_) > tolerance_;
   }
 

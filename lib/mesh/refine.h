@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <array>
 #include <functional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -21,7 +22,8 @@ class BrickError {
   /// the brick's.
   double measure(double enough, const Lattice& lattice, const Field& field, const Brick& brick,
                  const BrickValues& values);
-  /// The same for the triangles of each octant of the brick measured last, sampled once a triangle.
+  /// The same for the triangles of each octant of the brick measured last, up to what makes it certain that the octant
+  /// is split. Not of a brick at level 1, where it stops as soon as it can.
   [[nodiscard]] const std::array<double, 8>& octants() const noexcept { return octants_; }
   /// Field values computed since construction.
   [[nodiscard]] std::size_t evaluations() const noexcept { return evaluations_; }
@@ -32,23 +34,29 @@ class BrickError {
   struct Vertex {
     Vec3 index;
     double value = 0.0;
+    bool known = false;  ///< Its value.
   };
-  struct Face {
-    std::array<int, 3> vertex;
-    double slope;  ///< |∇f| of the cell, from its corners.
-    int octant;    ///< Of the brick.
+  /// A cell that holds rock and air, and its part of triangles_.
+  struct MixedCell {
+    int node, first, last;
   };
   [[nodiscard]] double hidden(double enough, const Lattice& lattice, const Field& field, const Brick& brick,
                               const BrickValues& values);
-  /// Surface in cells of one sign that are large enough to bury a block, as far as the Lipschitz constant allows any.
+  /// Surface in cells of one sign that are large enough to bury a block, as far as clear_value() allows any.
   [[nodiscard]] double buried(const Lattice& lattice, const Field& field, const Brick& brick,
                               const BrickValues& values);
-  void reconstruct(const Lattice& lattice, const Brick& brick, const BrickValues& values);
-  [[nodiscard]] double deviation(const Lattice& lattice, const Field& field, int subdivisions);
+  void reconstruct(const Brick& brick, const BrickValues& values);
+  /// |∇f| of a cell, from its corners.
+  [[nodiscard]] static double slope(const Vec3& per_metre, const BrickValues& values, int node);
+  /// What the triangles of these cells are off by; octants_ take it in.
+  [[nodiscard]] double deviation(const Lattice& lattice, const Field& field, const Brick& brick,
+                                 const BrickValues& values, std::span<const MixedCell> cells, int subdivisions);
 
   std::size_t evaluations_ = 0;
   std::vector<Vertex> vertices_;
-  std::vector<Face> faces_;
+  std::vector<std::array<int, 3>> triangles_;  ///< Of vertices_.
+  std::vector<MixedCell> cells_;
+  std::vector<int> asked_;  ///< Vertices.
   std::vector<double> x_, y_, z_, f_, slopes_;
   std::array<double, 8> octants_{};
   std::array<int, 3 * kNodes> vertex_of_edge_{};
@@ -60,7 +68,7 @@ using ForcedSplits = std::function<bool(const BrickPlace&)>;
 /// What refinement computed in a cell, so that nobody does it again.
 struct KnownCell {
   FieldPtr field;              ///< Narrowed to it.
-  std::vector<double> values;  ///< BrickValues::all() of a leaf; empty: not known.
+  std::vector<double> values;  ///< BrickValues::all(); empty: not known.
 };
 
 struct Refinement {

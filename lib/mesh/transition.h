@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "brick_tree.h"
@@ -46,9 +47,11 @@ class TransitionCells {
   [[nodiscard]] double at(int half) const noexcept { return values_[half]; }
   [[nodiscard]] std::size_t evaluations() const noexcept { return evaluations_; }
 
-  /// Those cells, in the brick.
-  [[nodiscard]] std::span<const IVec3> mixed() const noexcept { return mixed_; }
-  /// Calls emit(edge, edge, edge) for each triangle of mixed()[cell], counter-clockwise seen from the air.
+  /// How many of those cells hold rock and air.
+  [[nodiscard]] std::size_t size() const noexcept { return mixed_.size(); }
+  /// Where such a cell is in the brick.
+  [[nodiscard]] const IVec3& place(std::size_t cell) const noexcept { return mixed_[cell].place; }
+  /// Calls emit(edge, edge, edge) for each triangle of a cell, counter-clockwise seen from the air.
   template <class Emit>
   void for_each_triangle(std::size_t cell, Emit&& emit) const {
     for (std::size_t i = first_piece_[cell]; i < first_piece_[cell + 1]; ++i) emit_piece(pieces_[i], emit);
@@ -59,9 +62,12 @@ class TransitionCells {
     std::array<int, 5> corners;  ///< Half nodes; those of a tetrahedron are four.
     bool tetrahedron;
   };
-  void find_cells(const Lattice& lattice, const Field& field, const Brick& brick, const BrickValues& values,
-                  const FinerCells& finer);
-  void evaluate(const Lattice& lattice, const Field& field, const Brick& brick);
+  struct Cell {
+    IVec3 place;
+    int half;        ///< Of its first corner.
+    unsigned finer;  ///< FinerCells::around.
+    bool rock, air;  ///< What it is known to hold.
+  };
   /// A face of a coned cell: half nodes counter-clockwise from outside, and the middles between each and the next.
   struct FaceNodes {
     std::array<int, 4> corners, middles;
@@ -72,23 +78,31 @@ class TransitionCells {
       return !finer && (divided[0] || divided[1] || divided[2] || divided[3]);
     }
   };
+  /// What is known of a half node that is not a corner.
+  enum class Known : std::uint8_t { Nothing, Sign, Value };
+
+  void find_cells(const Lattice& lattice, const Field& field, const Brick& brick, const BrickValues& values,
+                  const FinerCells& finer);
+  void evaluate(const Lattice& lattice, const Field& field, const Brick& brick);
   template <class Visit>
-  static void for_each_face(const IVec3& cell, const FinerCells& finer, Visit&& visit);
-  void know_corner(int half, const BrickValues& values);
+  static void for_each_face(const Cell& cell, Visit&& visit);
+  /// Calls visit(half node, corners) for the half nodes of the cell that finer cells have, too.
+  template <class Visit>
+  static void for_each_shared(const Cell& cell, Visit&& visit);
+  template <class Visit>
+  static void for_each_piece(const Cell& cell, Visit&& visit);
   void want(int half);
-  void count_rock(const FaceNodes& face, int& rock, int& nodes) const;
-  [[nodiscard]] bool mixed(const FaceNodes& face) const;
-  template <class Visit>
-  void for_each_piece(const IVec3& cell, const FinerCells& finer, Visit&& visit) const;
+  [[nodiscard]] bool is_mixed(const FaceNodes& face) const;
   template <class Emit>
   void emit_piece(const Piece& piece, Emit&& emit) const;
 
   std::vector<double> values_, x_, y_, z_, f_;
-  std::vector<std::uint8_t> known_;
+  std::vector<Known> known_;
   std::vector<std::uint8_t> coned_;
   std::array<std::uint16_t, 3 * 81> divided_{};
-  std::vector<IVec3> cells_, mixed_;
+  std::vector<Cell> cells_, mixed_;
   std::vector<int> missing_;
+  std::vector<std::pair<int, int>> unmixed_;  ///< Middles of faces, each with a corner.
   std::vector<Piece> pieces_;
   std::vector<std::size_t> first_piece_;  ///< Of each mixed cell.
   std::size_t evaluations_ = 0;
