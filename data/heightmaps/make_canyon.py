@@ -372,7 +372,7 @@ def canyon(log):
 # ---- files ----
 
 
-def write_exr(path, h):
+def write_exr(path, h, note):
     """Scanline OpenEXR 2, one float channel Y, ZIP blocks of 16 lines (OpenEXR file layout, openexr.com)."""
     height, width = h.shape
 
@@ -381,7 +381,6 @@ def write_exr(path, h):
 
     box = struct.pack("<4i", 0, 0, width - 1, height - 1)
     channel = b"Y\0" + struct.pack("<iB3xii", 2, 0, 1, 1) + b"\0"
-    note = b"Elevations in metres, 1 m apart; made by make_canyon.py."
     header = struct.pack("<ii", 20000630, 2)
     header += attribute("channels", "chlist", channel) + attribute("comments", "string", note)
     header += attribute("compression", "compression", b"\x03") + attribute("dataWindow", "box2i", box)
@@ -405,7 +404,7 @@ def write_exr(path, h):
 def main():
     path = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).resolve().parent / "canyon.exr"
     h = np.round(canyon(lambda line: print(line, flush=True)) * 128) / 128  # 8 mm: the low bits are only noise
-    write_exr(path, h.astype(np.float32))
+    write_exr(path, h.astype(np.float32), b"Elevations in metres, 1 m apart; made by make_canyon.py.")
     gy, gx = np.gradient(h, CELL)
     slope = np.degrees(np.arctan(np.hypot(gx, gy)))
     print(f"{path.name}: {h.min():.1f} to {h.max():.1f} m, {100 * (slope > 45).mean():.0f} % steeper than 45 degrees, "

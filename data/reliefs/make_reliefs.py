@@ -10,6 +10,7 @@ so that a relief's slope stays bounded (amplitude * MAX_STEP * SIZE / period).
     cracked   three generations of cracks, the younger ending at the older; few are open; plates differ in height
     rough     a broken surface: conchoidal shells, hackle ribs that radiate from their origins, grain
     fluted    runnels that join and split on their way down (rillenkarren), with stepped floors
+    pebbly    rounded pebbles of many sizes that stand out of a worn matrix, some fallen out (conglomerate)
 
 Usage: make_reliefs.py [FOLDER]     (default: the folder of this file; same bytes every time)
 Needs Python 3.9 with numpy 1.20 or newer.
@@ -107,7 +108,7 @@ def finish(h, mean, high=97.0):
     return np.clip(blur(t, 0.7), 0, 1)
 
 
-# ---- the five ----
+# ---- the six ----
 
 
 def layered(rng):
@@ -313,6 +314,30 @@ def fluted(rng):
     return finish(blur(h, 0.8), 0.68, 98.0)
 
 
+def pebbly(rng):
+    h = 0.30 + 0.05 * noise(rng, 3, 12, 2.0) + 0.02 * noise(rng, 30, 150, 0.8)
+    taken = np.zeros((SIZE, SIZE), bool)
+    # radii follow a power law; the largest find their places first, smaller ones fill the room between them
+    radii = 0.008 * (1 - rng.random(2600) * (1 - (0.008 / 0.085) ** 1.6)) ** (-1 / 1.6)
+    for r in np.sort(radii)[::-1]:
+        c = rng.random(2)
+        flat, lean, angle = rng.uniform(1.15, 1.8), rng.normal(0.0, 0.3), rng.normal(0.0, 0.12)
+        x, y = wrap(U - c[0]), wrap(V - c[1])
+        x, y = x * np.cos(lean) + y * np.sin(lean), (-x * np.sin(lean) + y * np.cos(lean)) * flat
+        d = np.hypot(x, y) * (1 + 0.07 * np.sin(3 * np.arctan2(y, x) + 50 * angle)) / r
+        core = d < 1.02
+        if taken[core].any():
+            continue
+        taken |= core
+        out = rng.uniform(0.35, 1.0) * min(1.0, 0.25 + r / 0.05)
+        if rng.random() < 0.07:  # fallen out: its mould is left
+            h -= 0.4 * out * np.clip(1 - d**2, 0, None) ** 0.7
+        else:
+            h = np.maximum(h, np.where(core, h + out * 0.62 * np.clip(1 - d**2.4, 0, None) ** 0.55, h))
+            h -= 0.05 * np.exp(-(((d - 1.06) / 0.08) ** 2))  # the matrix is worn along its rim
+    return finish(blur(h, 0.7), 0.66)
+
+
 # ---- files ----
 
 
@@ -343,7 +368,7 @@ def write_png(path, h):
 
 def main():
     folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).resolve().parent
-    for seed, make in enumerate([layered, pitted, cracked, rough, fluted], start=1):
+    for seed, make in enumerate([layered, pitted, cracked, rough, fluted, pebbly], start=1):
         h = make(np.random.Generator(np.random.Philox(seed)))
         step = max(np.abs(h - np.roll(h, 1, axis)).max() for axis in (0, 1))
         if step > 0.06 or not 0.6 <= h.mean() <= 0.85:

@@ -244,6 +244,8 @@ StrataFile read_strata(const Json& json, const std::filesystem::path& folder, do
   StrataFile file;
   (void)reader.string("$schema", "");
   (void)reader.string("description", "");
+  for (const Json& source : reader.array("sources"))
+    if (source.type != Json::Type::String) source.fail("a source, as text");
   (void)reader.integer("version", kVersion, kVersion, kVersion);
   file.materials = read_materials(reader, folder, default_side);
   if (const Json* strata = reader.child("strata")) read_strata_pile(*strata, file, folder);
