@@ -321,20 +321,22 @@ def pebbly(rng):
     radii = 0.008 * (1 - rng.random(2600) * (1 - (0.008 / 0.085) ** 1.6)) ** (-1 / 1.6)
     for r in np.sort(radii)[::-1]:
         c = rng.random(2)
-        flat, lean, angle = rng.uniform(1.15, 1.8), rng.normal(0.0, 0.3), rng.normal(0.0, 0.12)
-        x, y = wrap(U - c[0]), wrap(V - c[1])
+        flat, lean, phase = rng.uniform(1.15, 1.8), rng.normal(0.0, 0.3), rng.uniform(-np.pi, np.pi)
+        reach = np.arange(-int(1.4 * r * SIZE) - 1, int(1.4 * r * SIZE) + 2)
+        window = np.ix_((int((1 - c[1]) * SIZE) + reach) % SIZE, (int(c[0] * SIZE) + reach) % SIZE)
+        x, y = wrap(U[window] - c[0]), wrap(V[window] - c[1])
         x, y = x * np.cos(lean) + y * np.sin(lean), (-x * np.sin(lean) + y * np.cos(lean)) * flat
-        d = np.hypot(x, y) * (1 + 0.07 * np.sin(3 * np.arctan2(y, x) + 50 * angle)) / r
+        d = np.hypot(x, y) * (1 + 0.07 * np.sin(3 * np.arctan2(y, x) + phase)) / r
         core = d < 1.02
-        if taken[core].any():
+        if taken[window][core].any():
             continue
-        taken |= core
+        taken[window] |= core
         out = rng.uniform(0.35, 1.0) * min(1.0, 0.25 + r / 0.05)
+        dome = np.clip(1 - d**2.4, 0, None) ** 0.55
         if rng.random() < 0.07:  # fallen out: its mould is left
-            h -= 0.4 * out * np.clip(1 - d**2, 0, None) ** 0.7
+            h[window] -= 0.4 * out * np.clip(1 - d**2, 0, None) ** 0.7
         else:
-            h = np.maximum(h, np.where(core, h + out * 0.62 * np.clip(1 - d**2.4, 0, None) ** 0.55, h))
-            h -= 0.05 * np.exp(-(((d - 1.06) / 0.08) ** 2))  # the matrix is worn along its rim
+            h[window] += out * 0.62 * dome - 0.05 * np.exp(-(((d - 1.06) / 0.08) ** 2))  # the matrix is worn along its rim
     return finish(blur(h, 0.7), 0.66)
 
 

@@ -65,6 +65,16 @@ class Strata(unittest.TestCase):
             for material in rock["materials"]:
                 self.assertTrue((ROOT / f"data/reliefs/{material['relief']['image']}.png").is_file(), path.name)
 
+    def test_rocks_have_sources_and_a_small_picture_in_the_gallery(self):
+        gallery = (ROOT / "docs/gallery.md").read_text()
+        rocks = [path for path in STRATA if path.stem != "canyon"]
+        self.assertGreaterEqual(len(rocks), 10)
+        for path in rocks:
+            for source in json.loads(path.read_text())["sources"]:
+                self.assertIn(source, gallery, path.name)
+            self.assertIn(f"(images/gallery/{path.stem}.png)", gallery)
+            self.assertLess((ROOT / f"docs/images/gallery/{path.stem}.png").stat().st_size, 300 * 1024, path.name)
+
     def test_every_key_of_the_schema_is_documented(self):
         text = (ROOT / "docs/formats.md").read_text()
         self.assertEqual([key for key in property_names(SCHEMA) if f"`{key}`" not in text], [])
@@ -89,7 +99,7 @@ class Strata(unittest.TestCase):
 
 class Files(unittest.TestCase):
     def test_reliefs_are_small_16_bit_grey_pngs(self):
-        for name in ("layered", "pitted", "cracked", "rough", "fluted"):
+        for name in ("layered", "pitted", "cracked", "rough", "fluted", "pebbly"):
             data = (ROOT / f"data/reliefs/{name}.png").read_bytes()
             self.assertEqual(struct.unpack(">IIBB", data[16:26]), (512, 512, 16, 0), name)
             self.assertLess(len(data), 450 * 1024, name)
