@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 """Makes cliff.exr and towers.exr: 113 x 81 elevations 1 m apart each, for the pictures of docs/gallery.md.
 
-    cliff     A wall of 36 m faces south, with a spur, a gully that cuts in behind it and a ledge that comes and goes; scree lies at
-              its foot, a gentle slope on its top.
-    towers    A group of rock towers with upright walls, up to 45 m, parted by clefts in two directions, on a cone of scree.
+    cliff     A wall of 36 m faces south, with a spur, a gully that cuts in behind it and a ledge that comes and goes;
+              scree lies at its foot, a gentle slope on its top.
+    towers    A group of rock towers with upright walls, up to 45 m, parted by clefts in two directions, on
+              scree.
 
-They say nothing of the rock: blocks and beds are what a strata file adds. `amplify --cell-size S --height-scale S` makes them S times
-as large, as rock asks for. All shapes are functions of the distance to the walls' upper edges.
+They say nothing of the rock: blocks and beds are what a strata file adds. `amplify --cell-size S --height-scale S`
+makes them S times as large, as rock asks for. All shapes are functions of the distance to the walls' upper edges.
 
 Usage: make_cliff.py [FOLDER]     (default: the folder of this file)
 Needs Python 3.9 with numpy 1.20 or newer.
@@ -62,7 +63,8 @@ def cliff():
     fan = 3.0 * fourier_noise(74, x, y, 30.0, 2) + 5.0 * np.exp(-(((x - 62.0) / 8.0) ** 2))
     scree = FOOT + fan + np.tan(np.radians(SCREE_DEG)) * (reach - out)
     scree = np.maximum(scree, 0.06 * y + 0.5 * fourier_noise(75, x, y, 25.0, 2))
-    top = TOP + np.tan(np.radians(TOP_DEG)) * inside + 0.5 * fourier_noise(76, x, y, 22.0, 3) * np.clip(inside / 8.0, 0.0, 1.0)
+    bumps = 0.5 * fourier_noise(76, x, y, 22.0, 3) * np.clip(inside / 8.0, 0.0, 1.0)
+    top = TOP + np.tan(np.radians(TOP_DEG)) * inside + bumps
     height = np.where(inside > 0.0, top, np.maximum(wall, scree))
     return blur(height, 0.55)[::-1]  # row 0 is the north edge
 
@@ -77,7 +79,8 @@ def towers():
         u = np.abs(dx * np.cos(a) - dy * np.sin(a)) - across + 0.7 * fourier_noise(80 + k, x, y, 20.0, 2)
         v = np.abs(dx * np.sin(a) + dy * np.cos(a)) - along + 0.7 * fourier_noise(90 + k, x, y, 20.0, 2)
         # The distance to a box; corners of 1.5 m.
-        distance = np.hypot(np.maximum(u + 1.5, 0.0), np.maximum(v + 1.5, 0.0)) + np.minimum(np.maximum(u, v) + 1.5, 0.0) - 1.5
+        distance = np.hypot(np.maximum(u + 1.5, 0.0), np.maximum(v + 1.5, 0.0)) - 1.5
+        distance += np.minimum(np.maximum(u, v) + 1.5, 0.0)
         roof = top + 0.35 * np.minimum(-distance, 5.0) + 0.8 * fourier_noise(100 + k, x, y, 14.0, 2)
         height = np.maximum(height, np.where(distance < 0.0, roof, top - np.tan(np.radians(TOWER_WALL_DEG)) * distance))
         nearest = np.minimum(nearest, distance)
@@ -93,8 +96,8 @@ def main():
         h = np.round(make() * 128) / 128
         write_exr(path, h.astype(np.float32), b"Elevations in metres, 1 m apart; made by make_cliff.py.")
         slope = np.degrees(np.arctan(np.hypot(*np.gradient(h))))
-        print(f"{path.name}: {h.min():.1f} to {h.max():.1f} m, {100 * (slope > 45).mean():.0f} % steeper than 45 degrees, "
-              f"{100 * (slope > 70).mean():.0f} % than 70, {path.stat().st_size // 1024} KiB")
+        print(f"{path.name}: {h.min():.1f} to {h.max():.1f} m, {100 * (slope > 45).mean():.0f} % steeper than 45 "
+              f"degrees, {100 * (slope > 70).mean():.0f} % than 70, {path.stat().st_size // 1024} KiB")
 
 
 if __name__ == "__main__":

@@ -336,7 +336,8 @@ def pebbly(rng):
         if rng.random() < 0.07:  # fallen out: its mould is left
             h[window] -= 0.4 * out * np.clip(1 - d**2, 0, None) ** 0.7
         else:
-            h[window] += out * 0.62 * dome - 0.05 * np.exp(-(((d - 1.06) / 0.08) ** 2))  # the matrix is worn along its rim
+            worn = 0.05 * np.exp(-(((d - 1.06) / 0.08) ** 2))  # the matrix, along its rim
+            h[window] += out * 0.62 * dome - worn
     return finish(blur(h, 0.7), 0.66)
 
 

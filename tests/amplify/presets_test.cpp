@@ -66,7 +66,8 @@ TEST_F(Presets, CoverAWallOfTheirSizeWithBlocks) {
   for (const Made& made : *made_) {
     // Layers thinner than a block lose blocks at their boundaries.
     EXPECT_GE(made.amplified.rock_coverage, made.file.strata.layers.size() > 4 ? 0.75 : 0.9) << made.name;
-    for (const RockReport& rock : made.amplified.rocks) EXPECT_GT(rock.replicated_blocks, 20u) << made.name << ", " << rock.material;
+    for (const RockReport& rock : made.amplified.rocks)
+      EXPECT_GT(rock.replicated_blocks, 20u) << made.name << ", " << rock.material;
   }
 }
 
