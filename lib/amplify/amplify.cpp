@@ -12,6 +12,7 @@
 #include "outcrop/implicit/combine.h"
 #include "outcrop/terrain/terrain_field.h"
 #include "outcrop/tiles/bedded_rock.h"
+#include "outcrop/tiles/finer_joints.h"
 #include "outcrop/tiles/large_fractures.h"
 #include "outcrop/tiles/replication.h"
 #include "rock_zone.h"
@@ -25,6 +26,9 @@ constexpr double kRasterNodes = 24e6;        // … but no more than this many i
 constexpr double kPlaceableShare = 0.7;      // Of a tile's volume; below that, its blocks are too small for the resolution.
 constexpr double kCellsInSmallestBlock = 2.0;  // Design decision 10.
 constexpr double kClosureSlope = 0.05;       // Blocks grow by this much a metre below the crack floor.
+constexpr double kBlocksPerSide = 5.0;       // Of a tile, about: what a finer tile is judged by before it is made.
+constexpr double kFinerDepth = 0.25;         // Of its blocks: how deep a finer joint cuts into a coarse block.
+constexpr double kFinerFloor = 1.0;          // Coarse blocks below the original surface: finer cracks close from there.
 constexpr double kCapInBlocks = 0.1;         // How far from blocks their field knows its value.
 constexpr double kFarthestBody = 1e4;        // Metres: presence asks how far away a body is.
 constexpr std::size_t kMostFaults = 64;  // Of the large fractures, that displace strata: the largest.
@@ -117,6 +121,23 @@ MadeRock make_rock(const TileOptions& tile, const AmplifyOptions& options, Seed 
   return rock;
 }
 
+/// The rock that cuts a material's blocks again; not placeable where there is none or the resolution cannot show it.
+MadeRock make_finer_rock(const StrataFile& file, const RockMaterial& material, const AmplifyOptions& options, Seed seed,
+                         const Task& task) {
+  if (!material.finer) return {};
+  const double side = material.finer->tile_side;
+  if (side < kBlocksPerSide * kCellsInSmallestBlock * options.resolution) return {};
+  return make_rock(tile_in_place(file, *material.finer, side), options, Rng(seed, "finer joints").next(), task);
+}
+
+/// By how much blocks grow: cracks narrower than two cells are welded, since a mesh would show them as scattered holes.
+double swelling_of(const MadeRock& rock, double resolution) {
+  return 0.5 * rock.aperture * std::clamp(2.0 - rock.aperture / resolution, 0.0, 1.0) * (1.0 + 1e-3);
+}
+
+/// Half the crack, and the grooves that rounding leaves along edges (at most R/3 where three faces meet).
+double closure_of(const MadeRock& rock) { return 0.5 * rock.aperture + 0.34 * rock.rounding; }
+
 Warp make_warp(const RockMaterial& material, double side, double resolution) {
   const RockRelief measures = rock_relief(material, side);
   if (measures.amplitude == 0.0) return {};
@@ -182,17 +203,46 @@ struct PlacedScene {
     return base->bound(box).hi > 0.0 && clip->bound(box).lo < 0.0;
   }
 
+  /// The blocks of a finer rock everywhere where those of a limb may be seen. None is left out, however small: what is
+  /// missing would be a hole in a coarse block.
+  [[nodiscard]] std::shared_ptr<const Replication> finer_blocks(const RockMaterial& material, const MadeRock& finer,
+                                                                Label label, const Mat3& world_from_tile,
+                                                                const FieldPtr& body, const FieldPtr& crack_floor,
+                                                                const Task& task) const {
+    return std::make_shared<Replication>(
+        Rock{.tile = finer.tile,
+             .warp = make_warp(material, finer.tile.side, options.resolution),
+             .label = label,
+             .world_from_tile = world_from_tile,
+             .origin = Vec3(corner, 0.0)},
+        stratified,
+        ReplicationOptions{
+            .domain = domain,
+            .visible = [this, body](const Box& box) { return (!body || body->bound(box).lo < 0.0) && visible(box); },
+            .crack_floor = crack_floor,
+            .closure = closure_of(finer),
+            .closure_slope = kClosureSlope,
+            .swelling = swelling_of(finer, options.resolution),
+            .cap = kCapInBlocks * finer.block_size},
+        task);
+  }
+
   /// The blocks of one rock, by the limbs of the folds; what they count goes to `report`.
-  [[nodiscard]] std::vector<FieldPtr> place(Label label, MadeRock rock, RockReport& report, const Task& task) const {
+  [[nodiscard]] std::vector<FieldPtr> place(Label label, MadeRock rock, const MadeRock& finer, RockReport& report,
+                                            const Task& task) const {
     const Placement& placement = file.placement;
     const RockMaterial& material = file.materials[label];
     const Mat3 bedding_from_tile = glm::transpose(file.strata.world_from_bedding()) * world_from_tile(file);
     const double size = rock.block_size, aperture = rock.aperture;
     const Warp warp = make_warp(material, rock.tile.side, options.resolution);
-    // Cracks narrower than two cells are welded everywhere: a mesh would show them as scattered holes.
-    const double swelling = 0.5 * aperture * std::clamp(2.0 - aperture / options.resolution, 0.0, 1.0) * (1.0 + 1e-3);
-    const double crack = placement.recess > 0.0 ? placement.crack_depth / (kReachInBlocks * placement.recess) : 0.0;
-    const FieldPtr crack_floor = displaced_terrain(terrain, zone.recess, crack);
+    const double swelling = swelling_of(rock, options.resolution);
+    // So many block sizes below the original surface.
+    const auto floor_at = [&](double blocks) {
+      const double share = placement.recess > 0.0 ? blocks / (kReachInBlocks * placement.recess) : 0.0;
+      return displaced_terrain(terrain, zone.recess, share);
+    };
+    const FieldPtr crack_floor = floor_at(placement.crack_depth);
+    const FieldPtr finer_floor = finer.placeable ? floor_at(std::max(kFinerFloor, placement.crack_depth)) : nullptr;
     std::vector<FieldPtr> placed;
     for (const Strata::Limb& limb : strata.limbs()) {
       const FieldPtr body = stratum_body(strata, label, limb, kFarthestBody, kFarthestBody);
@@ -206,8 +256,7 @@ struct PlacedScene {
           .slope = [this](const Vec3& p) { return zone.nearby.at(p.x, p.y).h > 0.0 ? 0.5 * kPi : 0.0; },
           .visible = [this, body](const Box& box) { return (!body || body->bound(box).lo < 0.0) && visible(box); },
           .crack_floor = crack_floor,
-          // Half the crack, and the grooves that rounding leaves along edges (at most R/3 where three faces meet).
-          .closure = 0.5 * aperture + 0.34 * rock.rounding,
+          .closure = closure_of(rock),
           .closure_slope = kClosureSlope,
           .swelling = swelling,
           .min_inradius = 0.5 * kCellsInSmallestBlock * options.resolution,
@@ -219,18 +268,27 @@ struct PlacedScene {
               .position = anchor.position, .ground = ground, .distance = anchor.distance, .material = label};
           return zone.rim.at(ground.x, ground.y).h * std::min(rules.of_place(site), rules.of_rock(site));
         };
+      const Mat3 world_from_tile = limb.world_from_bedding * bedding_from_tile;
       auto node = std::make_shared<Replication>(Rock{.tile = rock.tile,
                                                      .warp = warp,
                                                      .label = label,
-                                                     .world_from_tile = limb.world_from_bedding * bedding_from_tile,
+                                                     .world_from_tile = world_from_tile,
                                                      .origin = Vec3(corner, 0.0)},
                                                 stratified, std::move(replication), task);
       report.replicated_blocks += node->block_count();
       report.bytes += node->tile_bytes();
       if (node->block_count() == 0) continue;
+      FieldPtr blocks = std::move(node);
+      if (finer.placeable) {
+        const auto joints = finer_blocks(*material.finer, finer, label, world_from_tile, body, finer_floor, task);
+        report.finer_blocks += joints->block_count();
+        report.bytes += joints->tile_bytes();
+        // The surface that blocks are cut off at shows joints like their own.
+        blocks = with_finer_joints(bedded_rock(std::move(blocks), clip, {}), joints, kFinerDepth * finer.block_size);
+      }
       const FieldPtr cut = stratum_body(strata, label, limb, 2.0 * size, 2.0 * kCapInBlocks * size);
-      placed.push_back(cut ? bedded_rock(std::move(node), cut, {0.5 * aperture - swelling, crack_floor, kClosureSlope})
-                           : std::move(node));
+      if (cut) blocks = bedded_rock(std::move(blocks), cut, {0.5 * aperture - swelling, crack_floor, kClosureSlope});
+      placed.push_back(std::move(blocks));
     }
     return placed;
   }
@@ -299,7 +357,7 @@ Amplified amplify(const Heightfield& heightfield, const StrataFile& strata_file,
   if (strata.layers.empty()) used[0] = 1;
   for (const Stratum& layer : strata.layers) used[layer.material] = 1;
   for (const Label material : strata.map.materials()) used[material] = 1;
-  std::vector<MadeRock> rocks(material_count);
+  std::vector<MadeRock> rocks(material_count), finer_rocks(material_count);
   double reach = 0.0;
   for (std::size_t m = 0; m < material_count; ++m) {
     const RockMaterial& material = strata_file.materials[m];
@@ -313,6 +371,7 @@ Amplified amplify(const Heightfield& heightfield, const StrataFile& strata_file,
     if (!rocks[m].placeable) continue;
     rocks[m].reach = kReachInBlocks * rocks[m].block_size;
     reach = std::max(reach, rocks[m].reach);
+    finer_rocks[m] = make_finer_rock(strata_file, material, options, options.seed + m, task);
   }
   const Label ground = static_cast<Label>(material_count);
   result.label_names.push_back("ground");
@@ -372,7 +431,7 @@ Amplified amplify(const Heightfield& heightfield, const StrataFile& strata_file,
       if (!used[m]) continue;
       RockReport& rock_report = result.rocks[report++];
       if (!rocks[m].placeable) continue;
-      std::ranges::move(scene.place(static_cast<Label>(m), std::move(rocks[m]), rock_report, task),
+      std::ranges::move(scene.place(static_cast<Label>(m), std::move(rocks[m]), finer_rocks[m], rock_report, task),
                         std::back_inserter(placed));
     }
     if (!placed.empty()) rock_field = union_of(std::move(placed));

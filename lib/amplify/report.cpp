@@ -75,6 +75,7 @@ void write_rock(JsonWriter& json, const RockReport& rock) {
   write_count(json, "merged_chips", tile.merged_chips);
   write_count(json, "tile_blocks", rock.tile_blocks);
   write_count(json, "replicated_blocks", rock.replicated_blocks);
+  write_count(json, "finer_blocks", rock.finer_blocks);
   write_count(json, "bytes", rock.bytes);
   json.value("seconds", tile.seconds).value("overlap_share", tile.overlap_share);
   write_planes(json, "snapped", tile.filled_share, tile.mean_planes, tile.max_planes);

@@ -27,6 +27,22 @@ std::vector<std::string_view> names_of(const std::vector<RockMaterial>& material
   return names;
 }
 
+/// Joints, reliefs and lengths of a material, and no more.
+std::shared_ptr<const RockMaterial> read_finer(const Json& json, const RockMaterial& coarse,
+                                               const std::filesystem::path& folder, double default_side) {
+  JsonReader reader(json);
+  for (const char* key : {"name", "colour", "target"})
+    if (reader.has(key)) reader.child(key)->fail("\"finer\" without \"" + std::string(key) + "\"", "one with it");
+  if (!reader.has("tile_side")) json.fail("\"finer\" with the key \"tile_side\"", "one without");
+  RockMaterial finer = read_material(reader, folder, default_side);
+  const double side = coarse.tile_side > 0.0 ? coarse.tile_side : default_side;
+  if (side > 0.0 && !(finer.tile_side < side))
+    reader.child("tile_side")->fail("\"tile_side\": less than the material's own, " + std::to_string(side) + " m");
+  reader.finish();
+  finer.name = coarse.name;
+  return std::make_shared<const RockMaterial>(std::move(finer));
+}
+
 std::vector<RockMaterial> read_materials(JsonReader& reader, const std::filesystem::path& folder,
                                          double default_side) {
   const Json* json = reader.child("materials");
@@ -39,6 +55,7 @@ std::vector<RockMaterial> read_materials(JsonReader& reader, const std::filesyst
     JsonReader material(item);
     rules.push_back(material.child("where"));
     RockMaterial read = read_material(material, folder, default_side);
+    if (const Json* finer = material.child("finer")) read.finer = read_finer(*finer, read, folder, default_side);
     material.finish();
     for (const RockMaterial& other : materials)
       if (other.name == read.name) item.fail("a material with a name of its own", "\"" + read.name + "\" for the second time");
@@ -230,7 +247,11 @@ Mat3 world_from_tile(const StrataFile& file) {
 }
 
 TileOptions tile_in_place(const StrataFile& file, std::size_t material, double default_side) {
-  TileOptions options = tile_options(file.materials[material], default_side);
+  return tile_in_place(file, file.materials[material], default_side);
+}
+
+TileOptions tile_in_place(const StrataFile& file, const RockMaterial& material, double default_side) {
+  TileOptions options = tile_options(material, default_side);
   const Mat3 tile_from_bedding = glm::transpose(bedding_from_tile(file.placement));
   options.pattern = in_tile_frame(std::move(options.pattern), JointFrame::Bedding, tile_from_bedding);
   options.pattern = in_tile_frame(std::move(options.pattern), JointFrame::Map, glm::transpose(world_from_tile(file)));

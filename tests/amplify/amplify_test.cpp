@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 
 #include "implicit/field_contract.h"
 #include "outcrop/core/parallel.h"
@@ -137,6 +138,56 @@ TEST(Amplify, IsTheSameForAnyNumberOfThreads) {
   }
 }
 
+/// Blocks of some 1.6 m, cut again into some of 0.4 m.
+StrataFile blocks_of_blocks() {
+  StrataFile file = small_blocks();
+  RockMaterial finer;
+  finer.tile_side = 2.0;
+  finer.aperture = 0.03;
+  finer.variants = 2;
+  file.materials[0].finer = std::make_shared<const RockMaterial>(std::move(finer));
+  return file;
+}
+
+TEST(Amplify, FinerJointsTooSmallForTheResolutionChangeNothingAndCostNothing) {
+  const Amplified with = amplified(test::terraces(), blocks_of_blocks(), 0.25);
+  const Amplified without = amplified(test::terraces(), small_blocks(), 0.25);
+  EXPECT_EQ(with.rocks.at(0).finer_blocks, 0u);
+  EXPECT_EQ(with.rocks.at(0).bytes, without.rocks.at(0).bytes);
+  const auto meshed = [](const Amplified& a) {
+    return polygonize(*a.field, {.region = a.region, .resolution = 0.5, .parts = Parts::Grounded}).mesh;
+  };
+  const TriangleMesh a = meshed(with), b = meshed(without);
+  ASSERT_GT(a.positions.size(), 10'000u);
+  EXPECT_EQ(a.positions, b.positions);
+  EXPECT_EQ(a.triangles, b.triangles);
+  EXPECT_EQ(a.labels, b.labels);
+}
+
+TEST(Amplify, FinerJointsOnlyTakeRockAwayAtTheSurfaceOfBlocks) {
+  const Amplified with = amplified(test::terraces(), blocks_of_blocks(), 0.02);
+  const Amplified without = amplified(test::terraces(), small_blocks(), 0.02);
+  EXPECT_GT(with.rocks.at(0).finer_blocks, 20 * with.rocks.at(0).replicated_blocks);
+  Rng rng(8, "amplify test");
+  const Heightfield heightfield = test::terraces();
+  int taken = 0;
+  for (int i = 0; i < 40'000; ++i) {
+    const double x = rng.uniform(1.0, 62.0);
+    const double y = rng.uniform(1.0, 62.0);
+    const double z = heightfield.at(x, y).h + rng.uniform(-2.0, 1.0);
+    const double before = without.field->value({x, y, z}), after = with.field->value({x, y, z});
+    ASSERT_GE(after, before);
+    ASSERT_TRUE(after < 0.0 || before > -0.3) << before;
+    taken += after >= 0.0 && before < 0.0;
+  }
+  EXPECT_GT(taken, 100);
+}
+
+TEST(Amplify, BlocksOfBlocksPassTheFieldContract) {
+  const Amplified a = amplified(test::terraces(), blocks_of_blocks(), 0.02);
+  test::check_field_contract(*a.field, {Vec3(10.0, 20.0, -2.0), Vec3(40.0, 40.0, 28.0)}, 3);
+}
+
 StrataFile bedded(double undulation = 0.5) {
   StrataFile file = small_blocks();
   file.materials.push_back(file.materials[0]);
@@ -193,6 +244,15 @@ TEST(Amplify, BeddedRockPassesTheFieldContract) {
   file.strata.faults = {{.point = {30.0, 30.0, 12.0}, .dip = radians(60.0), .dip_direction = 1.0, .slip = 1.3}};
   const Amplified a = amplified(test::terraces(), file);
   test::check_field_contract(*a.field, {Vec3(2.0, 2.0, -2.0), Vec3(61.0, 61.0, 28.0)}, 3);
+}
+
+TEST(Amplify, BlocksOfBlocksInBedsPassTheFieldContract) {
+  StrataFile file = bedded();
+  file.materials[1].finer = blocks_of_blocks().materials[0].finer;
+  const Amplified a = amplified(test::terraces(), file, 0.02);
+  EXPECT_EQ(a.rocks.at(0).finer_blocks, 0u);
+  EXPECT_GT(a.rocks.at(1).finer_blocks, 10'000u);
+  test::check_field_contract(*a.field, {Vec3(10.0, 20.0, -2.0), Vec3(40.0, 40.0, 28.0)}, 3);
 }
 
 /// Rock in the northern half, thinning out southwards.

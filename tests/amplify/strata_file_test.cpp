@@ -178,6 +178,21 @@ TEST_F(StrataFileTest, FoldsFaultsAndMapsArrive) {
   EXPECT_NE(error.find("9 x 3"), std::string::npos) << error;
 }
 
+TEST_F(StrataFileTest, FinerJointsArriveAndHoldNoMoreThanAMaterialsJoints) {
+  const auto finer = [](const std::string& keys) {
+    return R"({"materials": [{"tile_side": 20, "finer": {)" + keys + "}}]}";
+  };
+  const StrataFile file = read(finer(R"("tile_side": 2, "block_type": "tabular", "aperture": 0.02)"));
+  ASSERT_TRUE(file.materials[0].finer);
+  EXPECT_EQ(file.materials[0].finer->tile_side, 2.0);
+  EXPECT_EQ(file.materials[0].finer->block_type, BlockType::Tabular);
+  EXPECT_EQ(tile_in_place(file, *file.materials[0].finer, 20.0).aperture, 0.02);
+  EXPECT_NE(error_of(finer(R"("aperture": 0.02)")).find("\"tile_side\", got one without"), std::string::npos);
+  EXPECT_NE(error_of(finer(R"("tile_side": 20)")).find("less than the material's own"), std::string::npos);
+  for (const char* key : {"name", "colour", "target", "where", "finer"})
+    EXPECT_NE(error_of(finer(R"("tile_side": 2, ")" + std::string(key) + "\": 1")).find(key), std::string::npos) << key;
+}
+
 TEST_F(StrataFileTest, ExamplesOfTheFormatsAreValid) {
   std::ifstream document(OUTCROP_SOURCE_DIR "/docs/formats.md");
   for (const char* image : {"geology.png", "bare.png"}) std::ofstream(folder_ / image) << "not read here";

@@ -32,6 +32,7 @@ struct RockReport {
   std::vector<Vec3> block_sizes;           ///< Extents along the tile's axes, metres.
   std::size_t tile_blocks = 0;
   std::size_t replicated_blocks = 0;       ///< Present in the region.
+  std::size_t finer_blocks = 0;            ///< That cut them again; 0: none, or too small for the resolution.
   std::size_t bytes = 0;                   ///< Memory of the tile's field functions.
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,6 +35,7 @@ struct RockMaterial {
   double relief_amplitude = -1.0;      ///< Metres; < 0: 0.006 · tile_side.
   Vec3f colour{0.42f, 0.37f, 0.31f};   ///< Linear albedo.
   std::optional<PlacementRule> where;  ///< Where its blocks stand, beside the placement's own rule.
+  std::shared_ptr<const RockMaterial> finer;  ///< Whose joints cut its blocks again; its tile is smaller. Null: none.
 };
 
 /// Where blocks stand.
@@ -97,6 +99,8 @@ struct StrataFile {
 /// What make_tile needs for a material of the file where it lies: joint sets that were measured on the map or in its beds
 /// are turned into the tile's frame.
 [[nodiscard]] TileOptions tile_in_place(const StrataFile& file, std::size_t material, double default_side);
+/// The same of a material that another one of the file holds.
+[[nodiscard]] TileOptions tile_in_place(const StrataFile& file, const RockMaterial& material, double default_side);
 
 /// The relief's measures with their defaults; the period divides the tile's side, so that the relief repeats with it.
 struct RockRelief {
