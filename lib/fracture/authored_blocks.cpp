@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "outcrop/core/error.h"
 #include "outcrop/fracture/hull.h"
 #include "outcrop/fracture/joints.h"
 
@@ -14,7 +13,6 @@ namespace {
 constexpr double kSamePlane = 1.0 - 1.5e-8;  // Cosine of 0.01°.
 constexpr double kTolerance = 1e-10;         // Of the side: as cells are cut.
 constexpr double kLongest = 0.95;            // Of the side: as cells are.
-constexpr double kSharpest = 20.0;           // A corner of 5.7° reaches that many distances beyond its planes.
 
 Polytope intersection(Polytope a, const Polytope& b, double tolerance) {
   for (const Polytope::Face& face : b.faces) {
@@ -142,7 +140,7 @@ std::vector<Polytope> welded(const std::vector<Polytope>& parts, double depth, d
   std::vector<Polytope> result = parts;
   for (std::size_t i = 0; i < parts.size(); ++i)
     for (const Polytope::Face& face : parts[i].faces) {
-      Polytope longer = box_polytope(result[i].bounds().grown(depth + tolerance));
+      Polytope longer = box_polytope(result[i].bounds().grown(depth + result[i].bounds().half_diagonal()));
       for (const Polytope::Face& other : result[i].faces)
         longer = clipped(longer, {other.plane.normal, other.plane.offset - (&other - result[i].faces.data() == &face - parts[i].faces.data() ? depth : 0.0)},
                          other.joint, tolerance);
@@ -156,7 +154,8 @@ std::vector<Polytope> welded(const std::vector<Polytope>& parts, double depth, d
 }
 
 Polytope grown(const Polytope& polytope, double distance, double tolerance) {
-  Polytope result = box_polytope(polytope.bounds().grown(kSharpest * distance + tolerance));
+  const Box box = polytope.bounds();
+  Polytope result = box_polytope(box.grown(distance + box.half_diagonal()));
   for (const Polytope::Face& face : polytope.faces)
     result = clipped(result, {face.plane.normal, face.plane.offset - distance}, face.joint, tolerance);
   return result;
@@ -168,28 +167,27 @@ Polytope moved(Polytope polytope, const Vec3& by) {
   return polytope;
 }
 
-void check_blocks(std::span<const AuthoredBlock> blocks, double side) {
+std::string misfit(std::span<const AuthoredBlock> blocks, double side) {
+  const auto name = [](std::size_t i) { return "blocks[" + std::to_string(i) + "]"; };
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     const AuthoredBlock& block = blocks[i];
-    const std::string name = "blocks[" + std::to_string(i) + "]";
-    require(!block.parts.empty(), name, "at least one part", 0.0);
+    if (block.parts.empty() || std::ranges::any_of(block.parts, &Polytope::empty)) return name(i) + ", which holds nothing";
     const Vec3 size = extent(block);
-    require(std::ranges::none_of(block.parts, &Polytope::empty), name, "parts with an inside", 0.0);
-    const double longest = std::max({size.x, size.y, size.z});
-    require(longest <= kLongest * side, name, "no longer than 0.95 of the tile's side along x, y and z", longest);
+    if (std::max({size.x, size.y, size.z}) > kLongest * side)
+      return name(i) + ", which is longer than 0.95 of the tile's side along x, y or z";
     for (std::size_t j = 0; j < i; ++j)
       for (const Polytope& a : block.parts)
         for (const Polytope& b : blocks[j].parts) {
-          const Box box = a.bounds();
-          const Vec3 lo = glm::ceil((box.lo - b.bounds().hi) / side), hi = glm::floor((box.hi - b.bounds().lo) / side);
+          const Box box = a.bounds(), other = b.bounds();
+          const Vec3 lo = glm::ceil((box.lo - other.hi) / side), hi = glm::floor((box.hi - other.lo) / side);
           for (double z = lo.z; z <= hi.z; ++z)
             for (double y = lo.y; y <= hi.y; ++y)
               for (double x = lo.x; x <= hi.x; ++x)
-                require(!overlap(a, moved(b, side * Vec3(x, y, z)), kTolerance * side), name,
-                        "a block that overlaps none before it, in copies of the tile neither",
-                        "one that overlaps blocks[" + std::to_string(j) + "]");
+                if (overlap(a, moved(b, side * Vec3(x, y, z)), kTolerance * side))
+                  return name(i) + ", which overlaps " + name(j) + " or a copy of it in the next tile";
         }
   }
+  return {};
 }
 
 }  // namespace outcrop

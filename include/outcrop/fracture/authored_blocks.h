@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "outcrop/fracture/polytope.h"
@@ -40,13 +41,13 @@ struct CutCell {
 /// as their union stays what it is.
 [[nodiscard]] std::vector<Polytope> welded(const std::vector<Polytope>& parts, double depth, double tolerance);
 
-/// The polytope with its planes moved out by `distance`, metres ≥ 0; corners sharper than 5 degrees are cut off.
+/// The polytope with its planes moved out by `distance`, metres ≥ 0; corners like needles are cut off.
 [[nodiscard]] Polytope grown(const Polytope& polytope, double distance, double tolerance);
 
 [[nodiscard]] Polytope moved(Polytope polytope, const Vec3& by);
 
-/// @throws ParameterError for a block without parts, one as long as the tile, or two that overlap, which copies of the tile
-/// count in.
-void check_blocks(std::span<const AuthoredBlock> blocks, double side);
+/// The first block that does not fit a tile, and why: it is empty, about as long as the tile, or overlaps another (copies of
+/// the tile count). Empty when all fit.
+[[nodiscard]] std::string misfit(std::span<const AuthoredBlock> blocks, double side);
 
 }  // namespace outcrop
