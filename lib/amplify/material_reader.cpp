@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "block_reader.h"
 #include "joint_reader.h"
 #include "outcrop/core/data_path.h"
 #include "target_reader.h"
@@ -82,14 +83,18 @@ RockMaterial read_material(JsonReader& reader, const std::filesystem::path& fold
   }();
   material.block_type = kBlockTypes[reader.choice("block_type", 0, types)];
   material.tile_side = reader.has("tile_side") ? reader.number("tile_side", 0.0, {0.1, 1000.0}) : 0.0;
-  if (material.tile_side == 0.0 && has_joint_lengths(reader)) material.tile_side = kPatternSide;
+  if (material.tile_side == 0.0 && (has_joint_lengths(reader) || reader.has("blocks"))) material.tile_side = kPatternSide;
   const double side = material.tile_side > 0.0 ? material.tile_side : default_side;
   read_lengths(reader, material, side);
   material.min_block_samples = reader.integer("min_block_samples", material.min_block_samples, 1, 10'000);
-  material.variants = reader.integer("variants", material.variants, 1, 64);
   const double joint_side = side > 0.0 ? side : kPatternSide;
   material.joints = read_joints(reader, material.block_type, folder, joint_side, spacing_of(material, joint_side));
   material.target = read_target(reader);
+  // A target changes the side: then the tile tells whether blocks fit.
+  material.blocks = read_blocks(reader, folder, material.target.any() ? 0.0 : side);
+  material.variants = reader.integer("variants", material.blocks.empty() ? material.variants : 1, 1, 64);
+  if (!material.blocks.empty() && material.variants > 1)
+    reader.child("variants")->fail("\"variants\": 1 in a material with \"blocks\"", std::to_string(material.variants));
   if (const Json* json = reader.child("relief")) read_relief_keys(*json, material, folder, side);
   const Vec3f& c = material.colour;
   const std::vector<double> colour = reader.numbers("colour", {c.r, c.g, c.b}, 3, {0.0, 1.0});
@@ -129,6 +134,7 @@ TileOptions tile_options(const RockMaterial& material, double default_side) {
   options.rounding = material.rounding > 0.0 ? material.rounding : kRoundingShare * options.side;
   options.min_block_samples = material.min_block_samples;
   options.variants = material.variants;
+  options.blocks = material.blocks;
   return options;
 }
 

@@ -9,6 +9,7 @@
 #include "outcrop/core/error.h"
 #include "outcrop/implicit/grid_field.h"
 #include "outcrop/mesh/write_mesh.h"
+#include "open_edges.h"
 #include "outputs.h"
 
 namespace outcrop {
@@ -33,7 +34,8 @@ std::vector<std::uint32_t> welded(const std::vector<Vec3f>& positions) {
   return first;
 }
 
-/// Edges that an odd number of triangles shares, whichever way they turn. Cost: O(n log n).
+}  // namespace
+
 std::size_t count_open_edges(const TriangleMesh& mesh) {
   const std::vector<std::uint32_t> vertex = welded(mesh.positions);
   std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
@@ -52,8 +54,6 @@ std::size_t count_open_edges(const TriangleMesh& mesh) {
   }
   return open;
 }
-
-}  // namespace
 
 MeshField mesh_field(const std::filesystem::path& path, double voxel, const Task& task) {
   const TriangleMesh mesh = read_mesh(path);

@@ -246,7 +246,8 @@ FieldPtr read_tile(JsonReader& reader, const Context& context) {
   std::vector<FieldPtr> blocks;
   for (const Block& block : tile.blocks) {
     const Vec3 middle(0.5 * tile.side);
-    const Vec3 centre = middle + explode * (block.centre - middle);
+    const Block& whole = *(&block - block.part);  // Its parts stay together.
+    const Vec3 centre = block.home + (explode - 1.0) * (whole.home - middle);
     PolytopeKernel kernel(block.planes, block.rounding, warp, block.centre);
     blocks.push_back(std::make_shared<Supported>(std::make_shared<RoundedPolytope>(std::move(kernel), centre),
                                                  block.bounds.moved(centre)));

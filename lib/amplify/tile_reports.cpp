@@ -33,7 +33,9 @@ void write_tile_reports(const std::vector<std::filesystem::path>& paths, const S
   json.begin_object().begin_array("rocks");
   for (std::size_t m = 0; m < file.materials.size(); ++m) {
     const RockMaterial& material = file.materials[m];
-    const Tile tile = make_tile(tile_in_place(file, m, default_side), seed + m, task);
+    TileOptions options = tile_in_place(file, m, default_side);
+    options.blocks.clear();  // The report is on the rock, not on what was placed in it.
+    const Tile tile = make_tile(options, seed + m, task);
     const std::string asked =
         "Asked for: " + std::string(name(material.block_type)) + (material.joints ? ", joint sets of its own" : "") +
         (material.target.any() ? ", " + described(material.target) : "") + "; seed " + std::to_string(seed + m);

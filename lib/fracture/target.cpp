@@ -72,7 +72,9 @@ TileOptions scaled(TileOptions options, double factor) {
 
 TargetedTile fit_tile(const TileOptions& options, const RockTarget& target, Seed seed, const Task& task) {
   check(target);
-  const RockStatistics rock = measure_rock(make_tile(options, seed, task), task);
+  TileOptions measured = options;
+  measured.blocks.clear();
+  const RockStatistics rock = measure_rock(make_tile(measured, seed, task), task);
 
   // Every target is a wish for the logarithm of the scale; their mean has the least squared error. A block volume grows
   // with the cube of the scale, Jv falls with it.

@@ -9,17 +9,15 @@
 #include "outcrop/core/parallel.h"
 #include "outcrop/fracture/clusters.h"
 #include "outcrop/fracture/hull.h"
-#include "outcrop/fracture/polytope.h"
 #include "outcrop/fracture/samples.h"
 #include "overlap.h"
+#include "tile_blocks.h"
 
 namespace outcrop {
 namespace {
 
-constexpr double kTolerance = 1e-10;    // Of the side: see clusters.cpp.
 constexpr double kLeastInradius = 0.4;  // Of the spacing: a thinner piece would be a blade between two samples.
 constexpr double kLongest = 0.95;       // Of the side: a block as long as the tile would show its period.
-constexpr std::size_t kAnchors = 24;
 constexpr std::size_t kOverlapProbes = 20'000;
 constexpr int kMostPasses = 6;           // Of drawing and splitting, until sets have the intensity that was asked for.
 constexpr double kNearIntensity = 0.03;  // Relative: near enough.
@@ -43,32 +41,10 @@ void check(const TileOptions& options, double spacing) {
           options.aperture);
   require(std::isfinite(options.rounding) && options.rounding >= 0.0, "rounding", "≥ 0 and finite", options.rounding);
   require(options.variants >= 1 && options.variants <= 256, "variants", "in 1 … 256", options.variants);
+  require(options.blocks.empty() || options.variants == 1, "variants", "1 in a tile with authored blocks", options.variants);
+  const std::string unfit = misfit(options.blocks, options.side);
+  require(unfit.empty(), "blocks", "blocks that fit the tile", unfit);
   require(options.min_block_samples >= 1, "min_block_samples", "≥ 1", options.min_block_samples);
-}
-
-// Points that spread through the block: each is the farthest from those before, the centre counting as the first.
-std::vector<Vec3> spread(const std::vector<Vec3>& points, std::size_t count) {
-  std::vector<double> room(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) room[i] = glm::dot(points[i], points[i]);
-  const auto less = [&](std::size_t a, std::size_t b) {  // ties by place: the order of the samples must not matter
-    if (room[a] != room[b]) return room[a] < room[b];
-    const Vec3& p = points[a];
-    const Vec3& q = points[b];
-    return p.x != q.x ? p.x < q.x : p.y != q.y ? p.y < q.y : p.z < q.z;
-  };
-  std::vector<Vec3> result;
-  while (result.size() < std::min(count, points.size())) {
-    std::size_t best = 0;
-    for (std::size_t i = 1; i < points.size(); ++i)
-      if (less(best, i)) best = i;
-    result.push_back(points[best]);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      const Vec3 d = points[i] - result.back();
-      room[i] = std::min(room[i], glm::dot(d, d));
-    }
-    room[best] = -1.0;
-  }
-  return result;
 }
 
 double area_of(const Polytope& shape, const Polytope::Face& face) {
@@ -161,43 +137,6 @@ std::vector<Disc> discs_as_cut(std::vector<Disc> discs, std::vector<Cluster>& cl
   return discs;
 }
 
-// The cell with its walls moved back by half the crack, around the centre of its largest ball.
-Block block_of(const Cluster& cluster, const TileOptions& options) {
-  const double back = 0.5 * options.aperture;
-  const double tolerance = kTolerance * options.side;
-  Polytope shape = box_polytope(cluster.shape.bounds().grown(1.0));
-  for (const Polytope::Face& face : cluster.shape.faces)
-    shape = clipped(shape, {face.plane.normal, face.plane.offset + back}, face.joint, tolerance);
-
-  Block block;
-  const Ball ball = inscribed_ball(shape);
-  block.layer = cluster.layer;
-  block.home = ball.centre;
-  block.inradius = ball.radius;
-  block.rounding = std::min(options.rounding, 0.5 * ball.radius);
-  block.centre = ball.centre - options.side * glm::floor(ball.centre / options.side);
-  for (int axis = 0; axis < 3; ++axis)
-    if (block.centre[axis] >= options.side) block.centre[axis] = 0.0;  // floor of a tiny negative number
-  for (const Polytope::Face& face : shape.faces)
-    block.planes.push_back({face.plane.normal, face.plane.distance(ball.centre)});
-  for (const Polytope::Face& face : shape.faces) block.plane_joint.push_back(face.joint);
-  for (Vec3& v : shape.vertices) v -= ball.centre;
-  block.bounds = shape.bounds();
-  block.hull = convex_hull(shape.vertices).value();
-  block.volume = volume(block.hull);
-  std::vector<Vec3> inside;
-  for (const Vec3& p : cluster.positions) {
-    const Vec3 q = p - ball.centre;
-    if (std::all_of(block.planes.begin(), block.planes.end(),
-                    [&](const Plane& plane) { return plane.distance(q) <= 0.0; }))
-      inside.push_back(q);
-  }
-  block.anchors = spread(inside, kAnchors);
-  if (block.anchors.empty()) block.anchors.push_back(Vec3(0.0));
-  block.sample_count = static_cast<std::uint32_t>(cluster.samples.size());
-  return block;
-}
-
 }  // namespace
 
 Tile make_tile(const TileOptions& options, Seed seed, const Task& task) {
@@ -237,7 +176,7 @@ Tile make_tile(const TileOptions& options, Seed seed, const Task& task) {
   tile.sets = pattern.sets;
   tile.discs = discs_as_cut(clusters.discs, clusters.list);
   const auto blocks_of = [&](const Clusters& of) {
-    return parallel_map(of.list.size(), [&](std::size_t i) { return block_of(of.list[i], options); }, task);
+    return make_blocks(of.list, samples, options, spacing, task);
   };
   tile.blocks = blocks_of(clusters);
   tile.layout = TileLayout::lattice(options.side);
@@ -254,10 +193,8 @@ Tile make_tile(const TileOptions& options, Seed seed, const Task& task) {
       for (Block& block : tile.others.back()) block.plane_joint.clear();
     }
   }
-  for (Block& block : tile.blocks) {
-    if (tile.others.empty()) block.home = block.centre;
-    if (tile.layout.layers.size() == 1) block.layer = 0;
-  }
+  if (tile.layout.layers.size() == 1)
+    for (Block& block : tile.blocks) block.layer = 0;
   const std::vector<PlainHull> plain = parallel_map(
       clusters.list.size(),
       [&](std::size_t i) {

@@ -237,14 +237,21 @@ Replication::Replication(Rock rock, FieldPtr terrain, ReplicationOptions options
 std::vector<Block> Replication::make_shapes(double reach, const std::vector<char>& used) {
   std::vector<Block> blocks;
   std::vector<double> volumes;
-  for (const Block& block : rock_.tile.blocks) volumes.push_back(block.volume);
+  const auto whole_volume = [](const Block* part) {
+    double volume = 0.0;
+    for (const Block* p = part - part->part; p < part - part->part + part->parts; ++p) volume += p->volume;
+    return volume;
+  };
+  for (const Block& block : rock_.tile.blocks)
+    if (block.part == 0) volumes.push_back(whole_volume(&block));
   std::ranges::sort(volumes);
   lists_.resize(used.size());
   for (std::size_t l = 0; l < used.size(); ++l) {
     List& list = lists_[l];
     list.first = static_cast<std::uint32_t>(shapes_.size());
     if (!used[l]) continue;
-    for (Block& block : arrangement_.blocks(rock_.tile, l)) {
+    std::vector<Block> listed = arrangement_.blocks(rock_.tile, l);
+    for (const Block& block : listed) {
       PolytopeKernel kernel(block.planes, block.rounding, rock_.warp, block.centre);
       lipschitz_ = std::max(lipschitz_, kernel.lipschitz());
       // The centre's smallest plane distance, not the reported ball: the proof of support_box needs exactly that.
@@ -255,7 +262,7 @@ std::vector<Block> Replication::make_shapes(double reach, const std::vector<char
                          .support = support_box(block.bounds, std::max(inner, 1e-3), reach),
                          .world = rotated(rock_.world_from_tile, block.bounds),
                          .inradius = block.inradius,
-                         .size_rank = static_cast<double>(volumes.end() - std::ranges::upper_bound(volumes, block.volume)) /
+                         .size_rank = static_cast<double>(volumes.end() - std::ranges::upper_bound(volumes, whole_volume(&block))) /
                                       static_cast<double>(volumes.size())});
       supports_in_tile_.push_back(shapes_.back().support.moved(block.home));
       list.support = hull(list.support, supports_in_tile_.back());
@@ -263,8 +270,8 @@ std::vector<Block> Replication::make_shapes(double reach, const std::vector<char
       half_block_ += block.bounds.half_diagonal();
       // A block is 1-Lipschitz before its warp, which only adds: no value lies deeper than half of its smallest extent.
       deepest_ = std::max(deepest_, 0.5 * std::min({size.x, size.y, size.z}));
-      blocks.push_back(std::move(block));
     }
+    std::ranges::move(listed, std::back_inserter(blocks));
     list.count = static_cast<std::uint32_t>(shapes_.size()) - list.first;
   }
   half_block_ /= static_cast<double>(std::max<std::size_t>(shapes_.size(), 1));
@@ -335,8 +342,10 @@ std::vector<std::uint64_t> Replication::present_blocks(const Arrangement::Copy& 
     const Vec3 world_centre = rock_.origin + rock_.world_from_tile * (copy.origin + shape.centre);
     const Box world = shape.world.moved(world_centre);
     if (!world.overlaps(options_.domain) || (options_.visible && !options_.visible(world))) continue;
-    const Reach reach = reach_into_body(block, world_centre);
+    Reach reach = reach_into_body(block, world_centre);
     if (reach == Reach::None) continue;
+    // What is not convex is there as a whole: of all its parts' anchors those in the body count.
+    if (block.parts > 1 && options_.body) reach = Reach::Part;
     if (options_.criterion || options_.weight) {
       const std::size_t n = block.anchors.size();
       x.resize(n), y.resize(n), z.resize(n), values.resize(n), gradients.resize(n), labels.resize(n), anchors.resize(n);
@@ -364,7 +373,7 @@ std::vector<std::uint64_t> Replication::present_blocks(const Arrangement::Copy& 
       if (options_.criterion && !present(options_.criterion, counting)) continue;
       if (options_.weight) {
         const double weight = mean_weight(options_.weight, counting);
-        if (weight < 1.0 && weight <= drop_threshold(copy.id, i, shape.size_rank)) continue;
+        if (weight < 1.0 && weight <= drop_threshold(copy.id, i - block.part, shape.size_rank)) continue;
       }
     }
     mask[i / 64] |= 1ull << (i % 64);

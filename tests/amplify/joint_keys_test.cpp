@@ -180,8 +180,24 @@ TEST_F(JointKeys, MistakesAreNamedWithTheirPlace) {
       {R"("columns": [{"irregularity": 0.5}])", {"width", "without"}},
       {R"("columns": [{"width": 2}], "column_width": 2)", {"either", "both"}},
       {R"("discs_at": [{"radius": 2}])", {"centre"}},
+      {R"("blocks": [{"at": [1, 2, 3]}])", {"box", "mesh", "parts", "none"}},
+      {R"("blocks": [{"box": [1, 1, 1], "mesh": "a.obj"}])", {"several"}},
+      {R"("blocks": [{"parts": []}])", {"part", "none"}},
+      {R"("blocks": [{"box": [1, 1, 1], "turn": 3}])", {"turn"}},
+      {R"("blocks": [{"box": [30, 1, 1]}])", {"fits the tile", "blocks[0]", "longer"}},
+      {R"("blocks": [{"box": [3, 3, 3]}, {"box": [3, 3, 3], "at": [18, 20, 0]}])", {"blocks[1]", "overlaps blocks[0]"}},
+      {R"("blocks": [{"box": [3, 3, 3]}], "variants": 4)", {"variants", "4"}},
+      {R"("blocks": [{"mesh": "tent.obj"}])", {"closed", "tent.obj", "3 open edges"}},
+      {R"("blocks": [{"mesh": "ell.obj"}])", {"convex", "ell.obj", "85 %", "parts"}},
       {R"("discs_at": [{"centre": [1, 2, 30], "radius": 2}])", {"centre", "20]", "30"}},
   };
+  // A tetrahedron without a side, and a prism like an L.
+  std::ofstream(folder_ / "tent.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\n";
+  std::ofstream(folder_ / "ell.obj")
+      << "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\n"
+         "v 0 0 1\nv 2 0 1\nv 2 1 1\nv 1 1 1\nv 1 2 1\nv 0 2 1\n"
+         "f 1 4 2\nf 2 4 3\nf 1 6 4\nf 4 6 5\nf 7 8 10\nf 8 9 10\nf 7 10 12\nf 10 11 12\n"
+         "f 1 2 8 7\nf 2 3 9 8\nf 3 4 10 9\nf 4 5 11 10\nf 5 6 12 11\nf 6 1 7 12\n";
   for (const Mistake& mistake : mistakes) {
     const std::string error = error_of(material(mistake.text));
     EXPECT_EQ(error.find('\n'), std::string::npos) << error;

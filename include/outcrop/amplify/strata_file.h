@@ -30,6 +30,7 @@ struct RockMaterial {
   double rounding = 0.0;               ///< Metres; 0: 0.0125 · tile_side (25 cm at 20 m, as in the paper).
   int min_block_samples = 12;
   int variants = 8;                    ///< Of the tile, that fit side by side; 1: the tile repeats.
+  std::vector<AuthoredBlock> blocks;   ///< Placed in the tile, which then has one variant.
   std::filesystem::path relief;        ///< Empty: the installed relief named "rough".
   double relief_period = 0.0;          ///< Metres; rounded so that it divides the tile's side. 0: tile_side / 5.
   double relief_amplitude = -1.0;      ///< Metres; < 0: 0.006 · tile_side.

@@ -25,6 +25,7 @@ inline constexpr int kWall = -1;         ///< The border of a box of rock: no jo
 inline constexpr int kAddedJoint = -2;   ///< A joint added because a piece wrapped around the torus or was too long.
 inline constexpr int kColumnJoint = -3;  ///< A joint between two columns.
 inline constexpr int kTierJoint = -4;    ///< A joint between two tiers of columns.
+inline constexpr int kAuthoredJoint = -5;  ///< The border of an authored block.
 
 /// A fracture disc in tile space (a torus of the tile's side).
 struct Disc {

@@ -9,6 +9,7 @@
 #include "outcrop/core/box.h"
 #include "outcrop/core/rng.h"
 #include "outcrop/core/task.h"
+#include "outcrop/fracture/authored_blocks.h"
 #include "outcrop/fracture/joints.h"
 #include "outcrop/fracture/tile_layout.h"
 #include "outcrop/implicit/rounded_polytope.h"
@@ -28,6 +29,8 @@ struct TileOptions {
   double rounding = 0.25;         ///< R of the smooth intersection; limited by half of a block's inradius.
   int min_block_samples = 12;     ///< A joint stops rather than cut off a chip of fewer samples; 1: chips stay.
   int variants = 1;               ///< 1: the tile repeats. More: that many tiles that fit side by side, up to 256.
+  /// Blocks that stand as they are given; cells are cut around them, an aperture away. Such a tile has one variant.
+  std::vector<AuthoredBlock> blocks{};
   Domain domain = Domain::Torus;  ///< A box is for measuring: its blocks end at walls (kWall) and do not tile.
 };
 
@@ -37,7 +40,7 @@ struct BlockMesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// One convex block. Positions are relative to `centre`, in metres, in the tile's axes.
+/// One convex block, or a part of one that is not convex. Positions are relative to `centre`, in metres, in the tile's axes.
 struct Block {
   Vec3 centre{0.0};           ///< In [0, side)³. The block may reach across the faces: it is one block all the same.
   std::vector<Plane> planes;  ///< In a fixed order; each bounds a face.
@@ -46,10 +49,12 @@ struct Block {
   double inradius = 0.0;      ///< Of the largest ball found around the centre.
   Box bounds;                 ///< Of the planes' polytope, unrounded.
   BlockMesh hull;             ///< CGAL's hull of the polytope's vertices.
-  double volume = 0.0;        ///< Of the hull, m³.
+  double volume = 0.0;        ///< Of the hull, m³; of a part: of what no part before it holds.
   std::vector<Vec3> anchors;  ///< Spread through the block, for presence: some 8 to 32 of its samples.
   std::uint32_t sample_count = 0;
   int layer = 0;   ///< Of the tile's layout.
+  /// This is part `part` of `parts` that overlap and stand in a row: one block, with the anchors of all of it.
+  std::uint32_t part = 0, parts = 1;
   Vec3 home{0.0};  ///< The centre in the base copy of its region: `centre` and whole tiles, where those are its period.
 };
 
