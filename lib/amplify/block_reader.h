@@ -11,6 +11,7 @@ namespace outcrop {
 
 /// The key "blocks"; meshes are relative to `folder`. @param side  Of the tile, metres; 0: not known yet.
 /// @throws InputError also for meshes that are open or not convex, and for blocks that overlap or are too long.
-[[nodiscard]] std::vector<AuthoredBlock> read_blocks(JsonReader& reader, const std::filesystem::path& folder, double side);
+[[nodiscard]] std::vector<AuthoredBlock> read_blocks(JsonReader& reader, const std::filesystem::path& folder,
+                                                     double side);
 
 }  // namespace outcrop

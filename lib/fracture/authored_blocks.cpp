@@ -31,7 +31,8 @@ std::vector<Polytope> beside(const Polytope& part, std::span<const Polytope> oth
   std::vector<Polytope> pieces{part};
   for (const Polytope& other : others) {
     std::vector<Polytope> left;
-    for (const Polytope& piece : pieces) std::ranges::move(difference(piece, other, tolerance), std::back_inserter(left));
+    for (const Polytope& piece : pieces)
+      std::ranges::move(difference(piece, other, tolerance), std::back_inserter(left));
     pieces = std::move(left);
   }
   return pieces;
@@ -57,7 +58,8 @@ Polytope hull_polytope(std::span<const Vec3> points) {
     const double length = glm::length(normal);
     if (length == 0.0) continue;
     const Vec3 n = normal / length;
-    if (std::ranges::any_of(planes, [&](const Plane& plane) { return glm::dot(plane.normal, n) > kSamePlane; })) continue;
+    const auto is_same = [&](const Plane& plane) { return glm::dot(plane.normal, n) > kSamePlane; };
+    if (std::ranges::any_of(planes, is_same)) continue;
     double farthest = -1e300;
     for (const Vec3& v : mesh->vertices) farthest = std::max(farthest, glm::dot(n, v));
     planes.push_back({n, -farthest});
@@ -138,18 +140,21 @@ CutCell without_covered(std::vector<Polytope> parts, double tolerance) {
 
 std::vector<Polytope> welded(const std::vector<Polytope>& parts, double depth, double tolerance) {
   std::vector<Polytope> result = parts;
-  for (std::size_t i = 0; i < parts.size(); ++i)
-    for (const Polytope::Face& face : parts[i].faces) {
-      Polytope longer = box_polytope(result[i].bounds().grown(depth + result[i].bounds().half_diagonal()));
-      for (const Polytope::Face& other : result[i].faces)
-        longer = clipped(longer, {other.plane.normal, other.plane.offset - (&other - result[i].faces.data() == &face - parts[i].faces.data() ? depth : 0.0)},
-                         other.joint, tolerance);
-      std::vector<Polytope> others = parts;
-      others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    std::vector<Polytope> others = parts;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+    for (std::size_t f = 0; f < parts[i].faces.size(); ++f) {
+      std::vector<Polytope::Face> faces = result[i].faces;
+      faces[f].plane.offset -= depth;
+      const Box box = result[i].bounds();
+      Polytope longer = box_polytope(box.grown(depth + box.half_diagonal()));
+      for (const Polytope::Face& face : faces) longer = clipped(longer, face.plane, face.joint, tolerance);
+      if (longer.faces.size() != faces.size()) continue;  // It would end in a point.
       const std::vector<Polytope> added = difference(longer, result[i], tolerance);
       if (std::ranges::all_of(added, [&](const Polytope& piece) { return beside(piece, others, tolerance).empty(); }))
         result[i] = std::move(longer);
     }
+  }
   return result;
 }
 
@@ -171,7 +176,8 @@ std::string misfit(std::span<const AuthoredBlock> blocks, double side) {
   const auto name = [](std::size_t i) { return "blocks[" + std::to_string(i) + "]"; };
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     const AuthoredBlock& block = blocks[i];
-    if (block.parts.empty() || std::ranges::any_of(block.parts, &Polytope::empty)) return name(i) + ", which holds nothing";
+    if (block.parts.empty() || std::ranges::any_of(block.parts, &Polytope::empty))
+      return name(i) + ", which holds nothing";
     const Vec3 size = extent(block);
     if (std::max({size.x, size.y, size.z}) > kLongest * side)
       return name(i) + ", which is longer than 0.95 of the tile's side along x, y or z";

@@ -41,7 +41,8 @@ void check(const TileOptions& options, double spacing) {
           options.aperture);
   require(std::isfinite(options.rounding) && options.rounding >= 0.0, "rounding", "≥ 0 and finite", options.rounding);
   require(options.variants >= 1 && options.variants <= 256, "variants", "in 1 … 256", options.variants);
-  require(options.blocks.empty() || options.variants == 1, "variants", "1 in a tile with authored blocks", options.variants);
+  require(options.blocks.empty() || options.variants == 1, "variants", "1 in a tile with authored blocks",
+          options.variants);
   const std::string unfit = misfit(options.blocks, options.side);
   require(unfit.empty(), "blocks", "blocks that fit the tile", unfit);
   require(options.min_block_samples >= 1, "min_block_samples", "≥ 1", options.min_block_samples);

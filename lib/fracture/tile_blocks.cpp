@@ -10,7 +10,7 @@ namespace outcrop {
 namespace {
 
 constexpr double kTolerance = 1e-10;   // Of the side: see clusters.cpp.
-constexpr double kLeastPart = 0.1;     // Of the spacing: radius of the ball that a part beside an authored block has room for.
+constexpr double kLeastPart = 0.1;     // Of the spacing: radius of a ball inside, beside authored blocks.
 constexpr double kWeld = 2.0;          // Roundings: how deep parts of one block reach into each other.
 constexpr std::size_t kAnchors = 24;
 
@@ -124,7 +124,8 @@ std::vector<Block> blocks_of(const Cluster& cell, const std::vector<Polytope>& o
   return blocks;
 }
 
-std::vector<Block> blocks_of(const AuthoredBlock& authored, const std::vector<Vec3>& samples, const TileOptions& options) {
+std::vector<Block> blocks_of(const AuthoredBlock& authored, const std::vector<Vec3>& samples,
+                             const TileOptions& options) {
   const double tolerance = kTolerance * options.side;
   Box bounds;
   for (const Polytope& part : authored.parts) bounds = hull(bounds, part.bounds());
@@ -143,7 +144,8 @@ std::vector<Block> make_blocks(const std::vector<Cluster>& cells, const std::vec
                                const TileOptions& options, double spacing, const Task& task) {
   std::vector<Polytope> obstacles;
   for (const AuthoredBlock& block : options.blocks)
-    for (const Polytope& part : block.parts) obstacles.push_back(grown(part, options.aperture, kTolerance * options.side));
+    for (const Polytope& part : block.parts)
+      obstacles.push_back(grown(part, options.aperture, kTolerance * options.side));
   const double least_part = std::max(kLeastPart * spacing, 0.5 * options.aperture);
   const auto of_cells = parallel_map(
       cells.size(), [&](std::size_t i) { return blocks_of(cells[i], obstacles, least_part, options); }, task);

@@ -257,13 +257,13 @@ std::vector<Block> Replication::make_shapes(double reach, const std::vector<char
       // The centre's smallest plane distance, not the reported ball: the proof of support_box needs exactly that.
       double inner = std::numeric_limits<double>::infinity();
       for (const Plane& plane : block.planes) inner = std::min(inner, -plane.offset);
+      const auto larger = volumes.end() - std::ranges::upper_bound(volumes, whole_volume(&block));
       shapes_.push_back({.kernel = std::move(kernel),
                          .centre = block.home,
                          .support = support_box(block.bounds, std::max(inner, 1e-3), reach),
                          .world = rotated(rock_.world_from_tile, block.bounds),
                          .inradius = block.inradius,
-                         .size_rank = static_cast<double>(volumes.end() - std::ranges::upper_bound(volumes, whole_volume(&block))) /
-                                      static_cast<double>(volumes.size())});
+                         .size_rank = static_cast<double>(larger) / static_cast<double>(volumes.size())});
       supports_in_tile_.push_back(shapes_.back().support.moved(block.home));
       list.support = hull(list.support, supports_in_tile_.back());
       const Vec3 size = block.bounds.size();

@@ -15,8 +15,8 @@ Polytope turned_box(const Vec3& size, const Vec3& at, double angle) {
   std::vector<Vec3> corners;
   for (int c = 0; c < 8; ++c) {
     const Vec3 p = 0.5 * size * Vec3(c & 1 ? 1 : -1, c & 2 ? 1 : -1, c & 4 ? 1 : -1);
-    corners.push_back(at + Vec3(std::cos(angle) * p.x - std::sin(angle) * p.y, std::sin(angle) * p.x + std::cos(angle) * p.y,
-                                p.z + 0.3 * p.x));
+    const double c_angle = std::cos(angle), s_angle = std::sin(angle);
+    corners.push_back(at + Vec3(c_angle * p.x - s_angle * p.y, s_angle * p.x + c_angle * p.y, p.z + 0.3 * p.x));
   }
   return hull_polytope(corners);
 }
@@ -86,7 +86,7 @@ TEST(AuthoredBlocks, StandAsTheyWereGivenInOnePieceACrackAwayFromAllOthers) {
     Rng rng(seed, "probes");
     for (std::size_t b = 0; b < 2; ++b) {
       double volume = 0.0;
-      for (std::size_t i = firsts[b]; i < firsts[b] + tile.blocks[firsts[b]].parts; ++i) volume += tile.blocks[i].volume;
+      for (std::size_t k = 0; k < tile.blocks[firsts[b]].parts; ++k) volume += tile.blocks[firsts[b] + k].volume;
       double expected = 0.0;
       for (const double own : without_covered(authored[b].parts, 1e-9).volumes) expected += own;
       EXPECT_NEAR(volume, expected, 1e-6);

@@ -40,7 +40,7 @@ struct BlockMesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// One convex block, or a part of one that is not convex. Positions are relative to `centre`, in metres, in the tile's axes.
+/// One convex block, or a part of one that is not. Positions are relative to `centre`, metres, in the tile's axes.
 struct Block {
   Vec3 centre{0.0};           ///< In [0, side)³. The block may reach across the faces: it is one block all the same.
   std::vector<Plane> planes;  ///< In a fixed order; each bounds a face.
