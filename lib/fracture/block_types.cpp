@@ -100,18 +100,24 @@ std::string_view name(BlockType type) noexcept {
 
 JointPattern joint_pattern(BlockType type, double side) {
   require(std::isfinite(side) && side > 0.0, "side", "> 0 and finite", side);
-  JointPattern pattern = pattern_at_20_m(type);
-  const double scale = side / kPatternSide;
+  return scaled(pattern_at_20_m(type), side / kPatternSide);
+}
+
+JointPattern scaled(JointPattern pattern, double factor) {
   for (JointSet& set : pattern.sets) {
-    set.spacing *= scale;
-    set.p32 /= scale;
-    set.radius_lo *= scale;
-    set.radius_hi *= scale;
-    set.radius_mean *= scale;
+    set.spacing *= factor;
+    set.p32 /= factor;
+    set.radius_lo *= factor;
+    set.radius_hi *= factor;
+    set.radius_mean *= factor;
   }
-  for (ColumnTier& tier : pattern.columns) tier.width *= scale;
-  pattern.centre_spacing *= scale;
-  pattern.least_thickness *= scale;
+  for (ColumnTier& tier : pattern.columns) tier.width *= factor;
+  for (Disc& disc : pattern.discs_at) {
+    disc.centre *= factor;
+    disc.radius *= factor;
+  }
+  pattern.centre_spacing *= factor;
+  pattern.least_thickness *= factor;
   return pattern;
 }
 

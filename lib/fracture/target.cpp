@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "outcrop/core/error.h"
 #include "outcrop/fracture/rock_formulas.h"
@@ -52,21 +53,7 @@ TileOptions scaled(TileOptions options, double factor) {
   options.spacing *= factor;
   options.aperture *= factor;
   options.rounding *= factor;
-  JointPattern& pattern = options.pattern;
-  for (JointSet& set : pattern.sets) {
-    set.spacing *= factor;
-    set.p32 /= factor;
-    set.radius_lo *= factor;
-    set.radius_hi *= factor;
-    set.radius_mean *= factor;
-  }
-  for (ColumnTier& tier : pattern.columns) tier.width *= factor;
-  for (Disc& disc : pattern.discs_at) {
-    disc.centre *= factor;
-    disc.radius *= factor;
-  }
-  pattern.centre_spacing *= factor;
-  pattern.least_thickness *= factor;
+  options.pattern = scaled(std::move(options.pattern), factor);
   return options;
 }
 

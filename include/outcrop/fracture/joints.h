@@ -112,6 +112,9 @@ inline constexpr double kPatternSide = 20.0;
 /// The pattern that stands for a type in a tile of `side` metres; numbers and sources in block_types.cpp.
 [[nodiscard]] JointPattern joint_pattern(BlockType type, double side = kPatternSide);
 
+/// The same rock in another size: all lengths times `factor`, > 0.
+[[nodiscard]] JointPattern scaled(JointPattern pattern, double factor);
+
 /// Where the tile that joints are drawn in ends.
 enum class Domain {
   Torus,  ///< Nowhere: it repeats.
